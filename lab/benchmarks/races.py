@@ -19,6 +19,7 @@ RACES = {  # functions run(folder, rounds, longest) that yield results
     "small-fits": "small_fits.run",
     "growth": "growth.run",
     "stream": "streaming.run",
+    "reading": "reading.run",
     "output-error": "output_error.run",
     "filter-error": "filter_error.run",
     "smoother": "smoother.run",

@@ -279,30 +279,44 @@ def read(data: AnyFlight, table: str | None = None) -> Flight:
     return data if isinstance(data, Flight) else Flight(data)
 
 
-def read_csv(file: str | os.PathLike[str]) -> Flight:
-    """Reads a whole CSV flight log: one header line, comma separated, one row a sample.
+def read_csv(file: str | os.PathLike[str], delimiter: str = "", decimal: str = "") -> Flight:
+    """Reads a whole text table, plain CSV or another form; `notes` say what was assumed.
 
     Units are converted and bad cells found when the flight is used, so that a column that is not
     needed can't stop the reading.
 
+    Args:
+        file: The table; of another form it is read as by read().
+        delimiter: What parts its columns, where it can be read in two ways: ",", ";", "|", "tab" or
+            "space" [as the file shows].
+        decimal: Its decimal mark, "." or "," [as the file shows].
+
     Raises:
-        Error: No such file, binary, separated by semicolons, a column twice, a short row, no rows;
-            the message names file, line and column.
+        Error: No such file, binary, no rows, or one that can be read in two ways; the message names
+            file and line.
     """
-    return Flight._of(_core.read_csv(name_of(file)))
+    return Flight._of(_core.read_csv(name_of(file), delimiter, decimal))
 
 
-def stream_csv(file: str | os.PathLike[str], folder: str | os.PathLike[str] = "") -> Flight:
+def stream_csv(
+    file: str | os.PathLike[str],
+    folder: str | os.PathLike[str] = "",
+    delimiter: str = "",
+    decimal: str = "",
+) -> Flight:
     """The same of a log that may be longer than memory: its columns lie on disc, 8 bytes a cell.
 
     Args:
         file: The CSV; it may be a pipe.
         folder: Where the columns are written, in files without a name [$TMPDIR, or /tmp].
+        delimiter: As of read_csv().
+        decimal: As of read_csv().
 
     Raises:
         Error: As read_csv(), and where the disc is full.
     """
-    return Flight._of(_core.stream_csv(name_of(file), name_of(folder) if folder else ""))
+    place = name_of(folder) if folder else ""
+    return Flight._of(_core.stream_csv(name_of(file), place, delimiter, decimal))
 
 
 def to_flight(flight: object, call: str, model: object = "") -> Flight:

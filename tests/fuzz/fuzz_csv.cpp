@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A user's log all the way from bytes to what a fit takes: CsvReader, read_csv(), and every probe's
 // prepare() and read(). Whatever is accepted must agree with independent readings of the same
-// bytes: OpenSSL's SHA-256 in one call, strtod(), a count of line ends.
+// bytes: OpenSSL's SHA-256 in one call, strtod().
 #include <openssl/sha.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <set>
 #include <vector>
 
 #include "fuzzing.hpp"
@@ -39,41 +41,53 @@ void check_number(const std::string& text) {
   require(std::isfinite(*number) && *number == other, "a number is the one that strtod() reads");
 }
 
-/// The file's rows as text. Refused or not, it ends within the file.
-std::vector<std::vector<std::string>> read_rows(const std::string& file, std::string_view bytes) {
-  const auto lines = static_cast<std::size_t>(std::ranges::count(bytes, '\n')) + 1;
+/// What CsvReader gives of a file.
+struct Table {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> cells;
+  std::vector<std::vector<std::optional<double>>> numbers;
+};
+
+/// Refused or not, it ends within the file.
+Table read_table(const std::string& file, std::string_view bytes) {
   CsvReader reader(file);
-  std::vector<std::vector<std::string>> rows{reader.header()};
-  require(!reader.header().empty() && reader.line() == 1, "the header is line 1");
-  for (const std::string& name : reader.header()) {
+  Table table{reader.header(), {}, {}};
+  require(reader.logged().size() == table.header.size(), "a column is one of the file's");
+  for (const std::string& name : table.header) {
     require(!name.empty() && is_utf8(name), "a column has a name, in UTF-8");
   }
+  require(std::set(table.header.begin(), table.header.end()).size() == table.header.size(),
+          "a column's name is its own");
+  std::size_t line = 0;
   while (reader.next()) {
-    rows.emplace_back(reader.cells().begin(), reader.cells().end());
-    require(rows.back().size() == reader.header().size(), "a row has the header's cells");
-    require(reader.line() == rows.size() && reader.line() <= lines, "lines are counted from 1");
-    require(bytes.find(reader.text()) != std::string_view::npos, "a row's text is the file's");
-    for (const std::string& cell : rows.back()) check_number(cell);
+    table.cells.emplace_back(reader.cells().begin(), reader.cells().end());
+    require(table.cells.back().size() == table.header.size(), "a row has the header's cells");
+    require(reader.line() > line, "lines are counted on");
+    line = reader.line();
+    table.numbers.emplace_back();
+    for (std::size_t i = 0; i < table.header.size(); ++i) {
+      table.numbers.back().push_back(reader.number(i));
+      require(std::isfinite(table.numbers.back().back().value_or(0.0)), "a number is finite");
+    }
+    require(reader.text().find('\n') == std::string_view::npos, "a row's text is one line");
+    for (const std::string& cell : table.cells.back()) check_number(cell);
   }
-  require(rows.size() > 1, "a file that is taken has a row");
+  require(!table.cells.empty(), "a file that is taken has a row");
   require(reader.sha256() == sha256_in_one_call(bytes), "the hash is SHA-256");
-  return rows;
+  for (const std::string& note : reader.notes()) require(is_utf8(note), "a note is UTF-8");
+  return table;
 }
 
 /// read_csv() sees the rows that CsvReader saw.
-void check_flight(const Flight& flight, const std::vector<std::vector<std::string>>& rows) {
-  const std::vector<std::string>& header = rows.front();
-  require(flight.rows() == rows.size() - 1, "a flight has the file's rows");
-  for (std::size_t column = 0; column < header.size(); ++column) {
-    const Flight::Column* found = flight.find(header[column]);
-    require((found == nullptr) == (header[column] == "maneuver"), "a column is labels or numbers");
+void check_flight(const Flight& flight, const Table& table) {
+  require(flight.rows() == table.cells.size(), "a flight has the file's rows");
+  for (std::size_t column = 0; column < table.header.size(); ++column) {
+    const bool is_label = table.header[column] == "maneuver";
+    const Flight::Column* found = is_label ? nullptr : flight.find(table.header[column]);
+    require((found == nullptr) == is_label, "a column is labels or numbers");
     for (std::size_t row = 0; row < flight.rows(); ++row) {
-      const std::string& cell = rows[row + 1][column];
-      if (found == nullptr) {
-        require(flight.maneuvers()[row] == cell, "a label is the cell's text");
-        continue;
-      }
-      const auto number = parse_number(cell);
+      if (is_label) continue;
+      const auto number = table.numbers[row][column];
       const double value = found->values[row];
       require(number ? value == *number : std::isnan(value), "a value is the cell's number");
       require(number || (found->first_text && found->first_text->row <= row),
@@ -127,12 +141,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static MemoryFile file;
   const std::string_view bytes = text_of(data, size);
   file.hold(bytes);
-  std::vector<std::vector<std::string>> rows;
-  const bool taken = accepts([&] { rows = read_rows(file.name(), bytes); });
+  Table table;
+  const bool taken = accepts([&] { table = read_table(file.name(), bytes); });
   const bool flown = accepts([&] {
     const sepcal::Flight flight = sepcal::read_csv(file.name());
     require(taken, "a flight is read from no file that the reader refuses");
-    check_flight(flight, rows);
+    check_flight(flight, table);
     for (const auto& probe : probes()) check_probe(*probe, flight);
   });
   require(flown == taken, "a file that the reader takes is a flight");

@@ -353,7 +353,7 @@ TEST_CASE("quotes that don't close or don't end the cell") {
         "double a quote that belongs to the cell");
   CHECK(refuse("\"a\n1\n") ==
         "flight.csv line 1: the quote of cell 1 is never closed; a quoted cell "
-        "ends on its line");
+        "ends on its line (its header has no comma; is this a CSV file?)");
 }
 
 TEST_CASE("the hash of a file that was not read is refused") {
