@@ -222,6 +222,41 @@ def test_a_sheet_that_measures_is_the_one(tmp_path):
     assert "sheet 'air' is read; Sheet, fuel not" in flight.notes[0]
 
 
+def test_a_workbook_of_people(tmp_path):
+    """A title, an empty row, times of day, an empty cell at a row's end, a word in a cell."""
+    import openpyxl
+
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.append(["Flight of March 1"])
+    sheet.append([])
+    sheet.append(["time_s", "airspeed_mps", "temp_degc"])
+    sheet.append([0.0, 10.5, 20.25])
+    sheet.append([0.5, "n/a", 20.5])
+    sheet.append([])
+    sheet.append([1.0, 11.5])
+    book.save(tmp_path / "a.xlsx")
+    flight = sepcal.read(tmp_path / "a.xlsx")
+    assert flight["time_s"].tolist() == [0.0, 0.5, 1.0]
+    np.testing.assert_array_equal(flight["airspeed_mps"], [10.5, np.nan, 11.5])
+    np.testing.assert_array_equal(flight["temp_degc"], [20.25, 20.5, np.nan])
+
+
+def test_a_workbook_with_dates(tmp_path):
+    import datetime
+
+    import openpyxl
+
+    book = openpyxl.Workbook()
+    book.active.append(["time", "airspeed_mps"])
+    for row in range(12):
+        moment = datetime.datetime(2026, 3, 1, 23, 59, 58) + datetime.timedelta(seconds=row / 4)
+        book.active.append([moment, 10.0 + row])
+    book.save(tmp_path / "a.xlsx")
+    flight = sepcal.read(tmp_path / "a.xlsx")
+    np.testing.assert_allclose(flight["time_s"], 86398 + np.arange(12) / 4, atol=1e-3)
+
+
 def test_importing_sepcal_loads_no_library():
     heavy = [
         "pandas",

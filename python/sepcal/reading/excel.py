@@ -22,7 +22,8 @@ from sepcal.reading.wanted import wanted
 
 WORKBOOK = "xl/workbook.xml"
 MOST_CELLS = 50_000_000
-FEWEST_ROWS = 2
+FEWEST_NUMBERS = 2  # of a row of numbers, times among them
+NUMBERS = (int, float, datetime.datetime, datetime.time)
 ROWS_OF_A_LOG = 10
 
 
@@ -86,8 +87,8 @@ def _write_sheets(
 
 
 def _write(file: str, rows: Iterable[tuple[Any, ...]], sheet: Sheet, budget: Budget) -> None:
-    """Writes the sheet as text, empty rows before the first and behind the last left out."""
-    cells = empty = 0
+    """Writes the sheet as text without its empty rows; shorter rows end in empty cells."""
+    cells = width = 0
     with open(sheet.text, "w", encoding="utf-8", newline="") as opened:
         writer = csv.writer(opened, lineterminator="\n")
         for row in rows:
@@ -101,19 +102,17 @@ def _write(file: str, rows: Iterable[tuple[Any, ...]], sheet: Sheet, budget: Bud
                     "write it as CSV"
                 )
             if not end:
-                empty += 1
                 continue
-            if sheet.rows or sheet.words:
-                opened.write("\n" * empty if sheet.rows == 0 else "")
-            empty = 0
             texts = [_text(cell) for cell in row[:end]]
-            numbers = sum(isinstance(cell, int | float) for cell in row[:end])
-            if numbers >= FEWEST_ROWS:
+            budget.take(sum(map(len, texts)) + end, f"sheet '{sheet.name}'")
+            if sum(isinstance(cell, NUMBERS) for cell in row[:end]) >= FEWEST_NUMBERS:
                 sheet.rows += 1
             elif sheet.rows == 0 and len(texts) >= len(sheet.words):
                 sheet.words = texts
-            writer.writerow(texts)
-        budget.take(opened.tell(), f"sheet '{sheet.name}'")
+            width = max(width, end) if sheet.rows else width
+            writer.writerow(
+                texts + [""] * (max(width, len(sheet.words)) - end if sheet.rows else 0)
+            )
 
 
 def _text(cell: object) -> str:

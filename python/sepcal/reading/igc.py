@@ -108,6 +108,7 @@ class _Recorder:
         self.rows: list[tuple[float, ...]] = []
         self.left_out: dict[str, int] = {}
         self.date = ""
+        self._by_code: dict[str, Extension] = {}
         self._day = 0
         self._last = -1.0
 
@@ -118,6 +119,7 @@ class _Recorder:
                 self.left_out[why] = self.left_out.get(why, 0) + 1
         elif line.startswith(b"I") and not self.extensions:
             self.extensions = _read_extensions(line)
+            self._by_code = {extension.code: extension for extension in self.extensions}
         elif not self.date and (found := DATE.match(line)):
             self.date = _to_date(found)
 
@@ -129,7 +131,7 @@ class _Recorder:
             return "that are damaged"
         if fix[8] == b"V":
             return "without a 3D fix (V)"
-        by_code = {extension.code: extension for extension in self.extensions}
+        by_code = self._by_code
         time += by_code["TDS"].share(line) if "TDS" in by_code else 0.0
         if time + self._day < self._last - BACK:
             self._day += DAY

@@ -42,11 +42,13 @@ class Topic:
     columns: dict[str, list[float]] = field(default_factory=dict)
     frame: str = ""
 
-    def add(self, time: int, values: Mapping[str, float]) -> None:
+    def add(self, time: int, values: Mapping[str, float], budget: Budget) -> None:
         """A message; NaN for fields that it lacks."""
         for name in values:
-            if name not in self.columns:
+            if name not in self.columns and len(self.columns) < MOST_FIELDS:
+                budget.take(8 * len(self.times), f"topic {self.name}")
                 self.columns[name] = [np.nan] * len(self.times)
+        budget.take(8 * len(self.columns), f"topic {self.name}")
         self.times.append(time)
         for name, column in self.columns.items():
             column.append(values.get(name, np.nan))
@@ -81,6 +83,7 @@ def _read_topics(file: str) -> tuple[list[Topic], list[str], str]:
     channels: dict[int, Any] = {}
     cut = ""
     with open(file, "rb") as opened:
+        budget = Budget(file)
         every = _records(file, opened, Budget(file))
         while True:
             try:
@@ -114,7 +117,7 @@ def _read_topics(file: str) -> tuple[list[Topic], list[str], str]:
                 kind = schema.name if schema is not None else ""
                 topic = topics.setdefault(channel.id, Topic(channel.topic, kind))
                 topic.frame = topic.frame or frame
-                topic.add(record.log_time, values)
+                topic.add(record.log_time, values, budget)
     if cut and not any(topic.times for topic in topics.values()):
         raise _core.Error(f"{file}: the MCAP file is damaged or cut off: {cut}")
     return list(topics.values()), list(skipped), cut

@@ -69,6 +69,8 @@ def _columns_of(
         ]
     if values.ndim == 1:
         return [(name, values)]
+    if values.ndim == 2 and values.shape[0] <= MOST_WIDE < values.shape[1]:
+        values = values.T  # a row a channel
     if values.ndim != 2 or values.shape[1] > MOST_WIDE:
         return []
     called = next((beside[name + end] for end in NAMES_OF if name + end in beside), None)
