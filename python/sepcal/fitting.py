@@ -76,7 +76,8 @@ def fit(
     model = as_model(model)
     columns_of_model = None if isinstance(data, Flight) else to_columns(data, model)
     if columns_of_model is None:
-        data = to_flight(data, "fit(model, ", model)
+        form = options.get("delimiter"), options.get("decimal")
+        data = to_flight(data, "fit(model, ", model, *form)
     if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
     effects = options.get("effects") or ()

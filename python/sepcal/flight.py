@@ -255,7 +255,9 @@ def _cell(text: str) -> str:
     return '"' + text.replace('"', '""') + '"'
 
 
-def read(data: AnyFlight, table: str | None = None) -> Flight:
+def read(
+    data: AnyFlight, table: str | None = None, *, delimiter: str = "", decimal: str = ""
+) -> Flight:
     """A flight of anything: a file of any form, or a table in memory.
 
     Args:
@@ -264,6 +266,9 @@ def read(data: AnyFlight, table: str | None = None) -> Flight:
             pandas or polars, an Arrow table, an xarray Dataset, a dict; a Flight, as it is.
         table: Of a file with several tables, whose rows are taken: a sheet, a group, a topic, a
             sensor [the one that measures]. "FILE::TABLE" says the same.
+        delimiter: Of a table as text that can be read in two ways, what parts its columns: ",",
+            ";", "|", "tab" or "space" [as the file shows].
+        decimal: Likewise its decimal mark, "." or ",".
 
     Returns:
         A Flight; its `notes` say what was decided.
@@ -273,9 +278,10 @@ def read(data: AnyFlight, table: str | None = None) -> Flight:
             table, with several that could be meant; a library that is not installed.
     """
     if isinstance(data, str | os.PathLike):
-        return Flight._of(read_file(name_of(data), table))
-    if table is not None:
-        raise _core.Error(f"table={table!r} is for files; these data are one table")
+        return Flight._of(read_file(name_of(data), table, delimiter, decimal))
+    for option, value in (("table", table), ("delimiter", delimiter), ("decimal", decimal)):
+        if value:
+            raise _core.Error(f"{option}={value!r} is for files; these data are one table")
     return data if isinstance(data, Flight) else Flight(data)
 
 
@@ -319,10 +325,16 @@ def stream_csv(
     return Flight._of(_core.stream_csv(name_of(file), place, delimiter, decimal))
 
 
-def to_flight(flight: object, call: str, model: object = "") -> Flight:
+def to_flight(
+    flight: object,
+    call: str,
+    model: object = "",
+    delimiter: str | None = "",
+    decimal: str | None = "",
+) -> Flight:
     """A flight of what read() takes; of a file the sensor of `model`, where it has several.
 
-    `model` is one, or its name.
+    `model` is one, or its name; delimiter and decimal are as of read().
 
     Raises Error, which shows how to call again, for anything else.
     """
@@ -330,7 +342,7 @@ def to_flight(flight: object, call: str, model: object = "") -> Flight:
         return flight
     if isinstance(flight, str | os.PathLike):
         with reading_for(kind_of(model)):
-            return read(flight)
+            return read(flight, delimiter=delimiter or "", decimal=decimal or "")
     if is_frame(flight) or isinstance(flight, Mapping | np.ndarray):
         return Flight(flight)  # type: ignore[arg-type]
     raise _core.Error(f"a {type(flight).__name__} is no flight; give one: {call}sepcal.read(file))")

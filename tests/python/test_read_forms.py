@@ -75,6 +75,17 @@ def test_a_name_says_nothing_of_the_form(name, flown, tmp_path):
     assert sepcal.read(file).rows == 200
 
 
+@pytest.mark.parametrize("name", list(WRITERS))
+def test_what_reads_csv_reads_it(name, flown, tmp_path):
+    """The library asks for such files by itself, so that every program in Python does."""
+    file = tmp_path / name
+    WRITERS[name](flown[0], file)
+    flight, expected = sepcal.read_csv(file), sepcal.read(file)
+    assert (flight.sha256, flight.notes) == (expected.sha256, expected.notes)
+    for header in expected:
+        np.testing.assert_array_equal(flight[header], expected[header])
+
+
 def test_later_verbs_know_the_flight(flown, tmp_path):
     columns, probe = flown
     write_parquet(columns, tmp_path / "a.parquet")
@@ -255,6 +266,17 @@ def test_a_workbook_with_dates(tmp_path):
     book.save(tmp_path / "a.xlsx")
     flight = sepcal.read(tmp_path / "a.xlsx")
     np.testing.assert_allclose(flight["time_s"], 86398 + np.arange(12) / 4, atol=1e-3)
+
+
+def test_how_a_text_is_read_is_for_texts(tmp_path):
+    (tmp_path / "a.csv").write_text("time_s;x_m\n0,5;1,25\n1,5;2,5\n")
+    flight = sepcal.read(tmp_path / "a.csv", delimiter=";", decimal=",")
+    assert flight["x_m"].tolist() == [1.25, 2.5]
+    pandas.DataFrame({"x_m": [1.0]}).to_parquet(tmp_path / "a.parquet")
+    refuse(
+        lambda: sepcal.read(tmp_path / "a.parquet", delimiter=";"), "a.parquet", "no table as text"
+    )
+    refuse(lambda: sepcal.read({"x_m": [1.0]}, decimal=","), "decimal=','", "for files")
 
 
 def test_importing_sepcal_loads_no_library():

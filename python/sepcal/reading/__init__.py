@@ -12,19 +12,23 @@ from sepcal.reading.wanted import AIR, MAGNETIC, reading_for
 __all__ = ["AIR", "MAGNETIC", "read_file", "read_foreign", "reading_for"]
 
 
-def read_file(file: str, table: str | None = None) -> _core.Flight:
+def read_file(
+    file: str, table: str | None = None, delimiter: str = "", decimal: str = ""
+) -> _core.Flight:
     """The flight of a file of any form, CSV included.
 
     Args:
         file: The file, or FILE::TABLE, where a sheet, a group, a topic or a sensor is meant.
         table: The same apart from the name.
+        delimiter: Of a table as text, what parts its columns; empty: as the file shows.
+        decimal: Of a table as text, its decimal mark; empty: as the file shows.
 
     Raises:
         Error: No such file, no table, one that is damaged or too large, a missing library.
     """
     from sepcal.reading.files import read
 
-    return read(file, table)
+    return read(file, table, delimiter, decimal)
 
 
 def read_foreign(file: str, form: str) -> _core.Flight:
