@@ -20,10 +20,12 @@ from sepcal import own_commands as own
 from sepcal.geomagnetism import command as field
 from sepcal.logs import command as log
 from sepcal.printing import in_line, tell
+from sepcal.reading import AIR, MAGNETIC, reading_for
 from sepcal.reporting import command as report
 from sepcal.validation import command as validation
 
 COMMANDS = (own, report, log, field, validation)
+SUBJECTS = {"mag": MAGNETIC, "pitot": AIR}  # what a file with several sensors is read for
 NAMES = ("model", "report", "log", "field", "validate")
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -73,7 +75,8 @@ def run_native(words: Sequence[str]) -> int:
     """What needs no Python beside the readers of logs."""
     sys.stdout.flush()
     try:
-        return _core.run_sepcal([os.fsencode(word) for word in words])
+        with reading_for(SUBJECTS.get(words[0], "") if words else ""):
+            return _core.run_sepcal([os.fsencode(word) for word in words])
     except ImportError as error:  # the aircraft's module was not built
         return refuse(f"sepcal: {error}")
 

@@ -2,6 +2,8 @@
 """Several tables of one file, each with a clock of its own, as one flight; and autopilots' logs."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -116,6 +118,18 @@ def test_two_that_measure_the_same_are_named(tmp_path):
     assert both["airspeed_mps"][0] == 1.0
     assert both["left.airspeed_mps"][0] == 0.0
     refuse(lambda: sepcal.read(file, table="up"), "no table 'up'", "left, right")
+
+
+def test_tables_that_begin_on_either_side_of_midnight(tmp_path):
+    before = np.int64(T0 + 12 * 3600) * 10**6  # of March 2, in us
+    with h5py.File(tmp_path / "a.h5", "w") as opened:
+        opened["air/timestamp"] = before + np.arange(-500_000, 2_000_000, 100_000)
+        opened["air/airspeed_mps"] = np.arange(25.0)
+        opened["gps/timestamp"] = before + np.arange(100_000, 2_000_000, 100_000)
+        opened["gps/vn_mps"] = np.arange(6, 25.0)
+    flight = sepcal.read(tmp_path / "a.h5")
+    np.testing.assert_allclose(flight["time_s"], 86399.5 + np.arange(25) / 10, atol=1e-6)
+    np.testing.assert_allclose(flight["vn_mps"][7:], flight["airspeed_mps"][7:], atol=1e-6)
 
 
 def test_matlab_variables_with_clocks_of_their_own(tmp_path):
@@ -254,6 +268,41 @@ def test_a_fit_takes_a_log(folder):
         assert any(f"readings of {sensor}" in note for note in fitted.notes)
         again = fitted.compare(str(file))
         assert again.residuals.tolist() == expected.compare().residuals.tolist()
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "sensor"),
+    [
+        (("mag", "fit", "--field-strength", "48.3"), "new.bin", "mag0"),
+        (("mag", "fit", "--field-strength", "48.3"), "new.bin::mag0", "mag0"),
+        (("pitot", "fit"), "new.bin", "pitot0"),
+        (("pitot", "fit"), "new.ulg", "pitot0"),
+    ],
+)
+def test_the_command_line_takes_a_log(words, name, sensor, folder, tmp_path):
+    command = [sys.executable, "-m", "sepcal", *words, str(folder / name), "-o", "base.json"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    probe = sepcal.load(tmp_path / "base.json")
+    log, _, _ = name.partition("::")
+    model = sepcal.PitotStatic() if sensor == "pitot0" else sepcal.Magnetometer(field_strength=48.3)
+    expected = sepcal.fit(model, sepcal.read_log(folder / log, sensor))
+    assert probe.values.tolist() == expected.values.tolist()
+    compared = subprocess.run(
+        [*command[:4], "compare", "base.json", command[-3]],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert compared.returncode in (0, 3), compared.stderr
+
+
+def test_a_text_has_no_tables(folder, tmp_path):
+    (tmp_path / "a.csv").write_text("time_s,airspeed_mps\n0,1\n1,2\n")
+    for read in (sepcal.read, sepcal.read_csv):
+        refuse(lambda read=read: read(f"{tmp_path / 'a.csv'}::x"), "a.csv: it is one table", "'x'")
+        refuse(lambda read=read: read(f"{tmp_path / 'b.csv'}::x"), "b.csv::x: no such file")
 
 
 def test_both_sensors_of_a_log(folder):

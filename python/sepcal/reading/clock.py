@@ -42,8 +42,11 @@ def since_midnight(dates: np.ndarray) -> tuple[Array, str]:
     return seconds_of(dates.astype("datetime64[ns]") - day.astype("datetime64[ns]")), str(day)
 
 
-def settle_clock(columns: dict[str, Array], dates: dict[str, np.ndarray], notes: list[str]) -> None:
-    """Puts time_s first, of the dates or of a clock without a unit; a clock with one stays."""
+def settle_clock(columns: dict[str, Array], dates: dict[str, np.ndarray], notes: list[str]) -> str:
+    """Puts time_s first, of the dates or of a clock without a unit; a clock with one stays.
+
+    Returns the day from whose midnight it counts, or nothing.
+    """
     clocks = [header for header in columns if is_clock(header)]
     if any(quantity_of(header) in (("time", u) for u in SECONDS) for header in clocks):
         for header in dates:
@@ -51,7 +54,7 @@ def settle_clock(columns: dict[str, Array], dates: dict[str, np.ndarray], notes:
         if clocks[0] == "time_ns":
             _put_first(columns, clocks[0], columns[clocks[0]] * 1e-9)
             notes.append("time_s is column 'time_ns' in seconds")
-        return
+        return ""
     usable = [header for header, values in dates.items() if _increases(values.astype(np.int64))]
     if usable:
         chosen = next((h for h in usable if is_clock(h)), usable[0])
@@ -61,18 +64,19 @@ def settle_clock(columns: dict[str, Array], dates: dict[str, np.ndarray], notes:
         for header in dates:
             if header != chosen:
                 notes.append(f"column '{header}' of dates is left out: '{chosen}' is the time")
-        return
+        return day
     for header in clocks:
-        if _take_clock(columns, header, notes):
-            return
+        if (taken := _take_clock(columns, header, notes)) is not None:
+            return taken
+    return ""
 
 
-def _take_clock(columns: dict[str, Array], header: str, notes: list[str]) -> bool:
-    """Makes time_s of a clock, where one reading alone is possible."""
+def _take_clock(columns: dict[str, Array], header: str, notes: list[str]) -> str | None:
+    """Makes time_s of a clock, where one reading alone is possible; its day, "", or None."""
     values = columns[header]
     known = values[np.isfinite(values)]
     if known.size < 2 or not _increases(known):
-        return False
+        return None
     quantity, unit = quantity_of(header)
     unit = unit or IN_NAME.get(quantity, "")
     for low, high, epoch in EPOCHS:
@@ -84,17 +88,17 @@ def _take_clock(columns: dict[str, Array], header: str, notes: list[str]) -> boo
             notes.append(
                 f"time_s is seconds since {day} 00:00 UTC: '{header}' counts {epoch} since 1970"
             )
-            return True
+            return str(day)
     if unit:
         _put_first(columns, header, values * SECONDS[unit])
         notes.append(f"time_s is column '{header}' in seconds")
-        return True
+        return ""
     step = float(np.median(np.diff(known)))
     if STEPS[0] <= step <= STEPS[1] and (known != np.round(known)).any():
         _put_first(columns, header, values)
         notes.append(f"time_s is column '{header}', which has no unit: taken for seconds")
-        return True
-    return False
+        return ""
+    return None
 
 
 def _put_first(columns: dict[str, Array], instead_of: str, seconds: Array) -> None:

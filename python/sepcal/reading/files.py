@@ -49,6 +49,8 @@ def read_other(file: str, form: str) -> _core.Flight:
     """sepcal.reading.read_foreign()."""
     place, chosen = _part(file)
     found = find_form(place)
+    if found == TABLE and chosen is not None:
+        raise _core.Error(f"{place}: it is one table as text; leave '{chosen}' out")
     if found == TABLE:
         what = f"{form}, which" if form else "its form"
         raise _core.Error(

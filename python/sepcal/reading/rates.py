@@ -105,7 +105,9 @@ def _ambiguous(file: str, tables: Sequence[Table]) -> _core.Error:
 
 def _around(base: Table, tables: Sequence[Table]) -> Table:
     """The base with the columns of all others at its rows."""
-    joined = Table(dict(base.columns), {}, list(base.labels), list(base.notes), base.name)
+    joined = Table(
+        dict(base.columns), {}, list(base.labels), list(base.notes), base.name, day=base.day
+    )
     others = [table for table in tables if table is not base]
     if others:
         joined.notes.insert(0, f"rows are those of table '{base.name}'")
@@ -125,7 +127,7 @@ def _bring_table(table: Table, joined: Table, base: Table) -> bool:
         _put(joined, table, values)
         joined.notes.append(f"table '{table.name}' joins row by row")
         return True
-    stamps, times = _in_seconds(base, mine), _in_seconds(table, theirs)
+    stamps, times = _in_seconds(base, mine), _in_seconds(table, theirs, base.day)
     unwrapped = np.stack([_unwrap(header, column) for header, column in values.items()], axis=1)
     how, brought = "", {}
     for index, header in enumerate(values):
@@ -150,9 +152,13 @@ def _put(joined: Table, table: Table, columns: dict[str, Array]) -> None:
         joined.columns[free] = values
 
 
-def _in_seconds(table: Table, clock: str) -> Array:
+def _in_seconds(table: Table, clock: str, day: str = "") -> Array:
+    """The table's time [s], from the midnight of `day` where both have dates."""
     factor = SECONDS.get(quantity_of(clock)[1], 1.0)
-    return table.columns[clock] * factor if factor != 1.0 else table.columns[clock]
+    seconds = table.columns[clock] * factor if factor != 1.0 else table.columns[clock]
+    if day and table.day and day != table.day:
+        seconds = seconds + (np.datetime64(table.day, "s") - np.datetime64(day, "s")).astype(float)
+    return seconds
 
 
 def _unwrap(header: str, values: Array) -> Array:
@@ -180,7 +186,7 @@ def one_below_the_other(tables: Sequence[Table]) -> Table:
     """The rows of each table, by time; what another measures is empty there."""
     if len(tables) == 1:
         return tables[0]
-    stamps = np.concatenate([_in_seconds(t, t.clock or "") for t in tables])
+    stamps = np.concatenate([_in_seconds(t, t.clock or "", tables[0].day) for t in tables])
     order = np.argsort(stamps, kind="stable")
     headers = dict.fromkeys(h for table in tables for h in table.columns if not is_clock(h))
     columns = {TIME: stamps[order]}

@@ -27,6 +27,8 @@ class Table:
         labels: Column "maneuver", a text a row, or empty.
         notes: What was decided, one line each.
         name: What the file calls the table: a group, a topic, a sheet.
+        left_out: Columns that hold no numbers, until settle() notes them.
+        day: From whose midnight, UTC, its time counts; nothing where it has no dates.
     """
 
     columns: dict[str, Array] = field(default_factory=dict)
@@ -35,6 +37,7 @@ class Table:
     notes: list[str] = field(default_factory=list)
     name: str = ""
     left_out: list[str] = field(default_factory=list)
+    day: str = ""
 
     @property
     def rows(self) -> int:
@@ -68,7 +71,7 @@ class Table:
 
     def settle(self) -> None:
         """Makes time_s of the dates or of a clock without a unit, and notes what was left out."""
-        settle_clock(self.columns, self.dates, self.notes)
+        self.day = settle_clock(self.columns, self.dates, self.notes) or self.day
         self.dates = {}
         if self.left_out:
             self.notes.append(f"left out, for they hold no numbers: {listed(self.left_out)}")

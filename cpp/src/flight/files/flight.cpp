@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <variant>
 
 #include "base/spool.hpp"
@@ -45,10 +47,19 @@ ForeignReader& foreign_reader() {
   return reader;
 }
 
+/// Whether it is FILE::TABLE, which names a table in a file, and no file has that whole name.
+bool names_table(const std::string& file) {
+  const std::size_t at = file.rfind("::");
+  std::error_code ignored;
+  return at != std::string::npos && !std::filesystem::exists(file, ignored) &&
+         std::filesystem::exists(file.substr(0, at), ignored);
+}
+
 /// The file's reader, or the flight that it is of another form.
 std::variant<std::unique_ptr<CsvReader>, Flight> open_table(const std::string& file,
                                                             const Progress& progress,
                                                             const CsvForm& form) {
+  if (foreign_reader() && names_table(file)) return foreign_reader()(file, "");
   try {
     return std::make_unique<CsvReader>(file, progress, form);
   } catch (const files::ForeignFile& foreign) {
