@@ -289,7 +289,7 @@ def test_the_command_line_takes_a_log(words, name, sensor, folder, tmp_path):
     expected = sepcal.fit(model, sepcal.read_log(folder / log, sensor))
     assert probe.values.tolist() == expected.values.tolist()
     compared = subprocess.run(
-        [*command[:4], "compare", "base.json", command[-3]],
+        [*command[:4], "compare", command[-3], "base.json"],
         cwd=tmp_path,
         capture_output=True,
         text=True,

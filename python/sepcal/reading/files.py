@@ -63,7 +63,7 @@ def _part(file: str) -> tuple[str, str | None]:
     """The file and what is behind "::", where no file has the whole name."""
     name = name_of(file)
     place, mark, chosen = name.rpartition("::")
-    if mark and chosen and not os.path.exists(name):
+    if mark and chosen and not os.path.exists(name) and os.path.exists(place):
         return place, chosen
     return name, None
 
