@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Protocol, Unpack
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.geometry import Aircraft
 from sepcal.states_module import states_module
 from sepcal.trajectories import TrajectoryOptions, complete, to_core_options
@@ -21,6 +22,7 @@ class AircraftModel(Protocol):
         """Of sepcal._states.Options, all but those of the fit."""
 
 
+@checked
 class Aero:
     """Aerodynamic coefficients by equation error: computed row by row, one linear least squares.
 
@@ -66,6 +68,7 @@ class Aero:
         return f"Aero({self.aircraft!r}, equations={self.equations!r}, window={self.window!r})"
 
 
+@checked
 class RigidAircraft:
     """An aircraft by output error: integrated from its initial states, it gives the readings.
 

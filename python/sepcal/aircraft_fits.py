@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, overload
 
 from sepcal import _core
 from sepcal.aircraft import Aero, AircraftModel
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
@@ -18,7 +19,7 @@ from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.geometry import Aircraft
 from sepcal.intervals import Intervals
 from sepcal.options import spelled_out, to_core, to_names
-from sepcal.own_effect import name_effects
+from sepcal.own_effect import given_effects, name_effects
 from sepcal.pages import Page
 from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
@@ -45,6 +46,7 @@ class AddedRegressor(NamedTuple):
     drop: float  # the same as it fell; predicted is NaN of equation error
 
 
+@checked
 class AircraftFit(Fit):
     """A Fit of a flight path or an aircraft, with all that later verbs need.
 
@@ -398,6 +400,7 @@ class AircraftFit(Fit):
         return _parse, (self.to_json(),)
 
 
+@checked
 class TwoSteps(Page):
     """A flight path, then the aerodynamics of what was flown.
 
@@ -477,6 +480,7 @@ def fit_flights(
 
 
 @spelled_out()
+@checked
 def two_step(
     flight: AnyFlight,
     aircraft: Aircraft,
@@ -516,7 +520,7 @@ def _core_options(model: AircraftModel, options: FitOptions) -> _states.Options:
 
 
 def _with_fit(laid: dict[str, Any], options: FitOptions) -> _states.Options:
-    names = name_effects(options.get("effects") or ())
+    names = name_effects(given_effects(options))
     core: _states.Options = states_module().Options(
         **laid, fit=to_core({**options, "effects": names})
     )

@@ -12,6 +12,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.aircraft_fits import AircraftFit, read_fit
+from sepcal.arguments import Missing, checked
 from sepcal.certificates import Certificate
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
@@ -30,6 +31,7 @@ from sepcal.whole_files import name_of
 Path = str | os.PathLike[str]
 
 
+@checked
 class Calibration(Fit):
     """A Fit of a probe, with all that later verbs need: probe, options, and the flight fitted.
 
@@ -71,8 +73,8 @@ class Calibration(Fit):
 
     def __getitem__(self, name: str) -> _core.Parameter:
         """The parameter. Raises KeyError listing the names."""
-        if name in self.derived:
-            raise KeyError(f"'{name}' follows from the parameters: derived['{name}']")
+        if isinstance(name, str) and name in self.derived:
+            raise Missing(f"'{name}' follows from the parameters: derived['{name}']")
         return super().__getitem__(name)
 
     @property
@@ -404,6 +406,7 @@ def _are_several(
     return isinstance(flight, Sequence) and not isinstance(flight, str)
 
 
+@checked
 def load(
     file: Path,
     effects: Sequence[Effect] = (),

@@ -2,11 +2,13 @@
 """The physical effects that sepcal knows, model by model."""
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.own_state_model import AnyModel, as_model
 
 PROBES = tuple(name for name, _ in _core.shipped_probes())
 
 
+@checked
 def effects(model: AnyModel | str) -> list[_core.CataloguedEffect]:
     """The catalogue of a probe, of a probe's name, or of a model of your own.
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from sepcal import _core
 from sepcal.aircraft import Aero, RigidAircraft
+from sepcal.arguments import checked
 from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
@@ -17,6 +18,7 @@ from sepcal.states_module import states_module
 from sepcal.trajectories import FlightPath
 
 
+@checked
 class FlightCheck(Page, _core.FlightCheck):
     """A log, column by column, and notes. `print(check)` shows the page."""
 
@@ -71,6 +73,7 @@ class FlightCheck(Page, _core.FlightCheck):
         return [note._asdict() for note in self.notes]
 
 
+@checked
 def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCheck:
     """What a log is, column by column, and what that does to a calibration from it.
 

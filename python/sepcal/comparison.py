@@ -10,10 +10,12 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
 
 
+@checked
 class Comparison(Page, _core.Comparison):
     """A calibration against a flight. `print(comparison)` shows the table."""
 

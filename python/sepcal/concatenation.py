@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.models import Model
 from sepcal.own_model import SeparableModel
 from sepcal.own_state_model import as_model
@@ -30,6 +31,7 @@ class Concatenation(Model):
         return f"concatenate({', '.join(parts)})"
 
 
+@checked
 def concatenate(
     *sensors: Model | SeparableModel, **labelled: Model | SeparableModel
 ) -> Concatenation:

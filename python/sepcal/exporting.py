@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.calibration import Calibration, Path
 from sepcal.flight import AnyFlight, to_flight
 from sepcal.whole_files import name_of
@@ -31,6 +32,7 @@ class Exported(_core.Exported):
         return read
 
 
+@checked
 def export(
     calibration: Calibration,
     file: Path,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol, Self, TypeAlias
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import Missing, checked
 from sepcal.columns import Array, Columns, by_name, to_column, to_labels
 from sepcal.options import to_names
 from sepcal.plots import Backend, Theme
@@ -48,6 +49,7 @@ class Dataset(Protocol):
         """Its variables."""
 
 
+@checked
 class Flight(Mapping[str, Array]):
     """A flight log: columns under headers with units, `<quantity>_<unit>`, as in a CSV file.
 
@@ -158,9 +160,9 @@ class Flight(Mapping[str, Array]):
 
     def __getitem__(self, header: str) -> Array:
         """The column, shape (rows,), read-only; NaN where a file's cell is no number."""
-        values = self._core.column(header)
+        values = self._core.column(header) if isinstance(header, str) else None
         if values is None:
-            raise KeyError(f"column '{header}' is missing; {self._core.list_columns()}")
+            raise Missing(f"column {header!r} is missing; {self._core.list_columns()}")
         return values
 
     def __iter__(self) -> Iterator[str]:
@@ -279,6 +281,7 @@ def read(data: AnyFlight, table: str | None = None) -> Flight:
     return data if isinstance(data, Flight) else Flight(data)
 
 
+@checked
 def read_csv(file: str | os.PathLike[str], delimiter: str = "", decimal: str = "") -> Flight:
     """Reads a whole text table, plain CSV or another form; `notes` say what was assumed.
 
@@ -298,6 +301,7 @@ def read_csv(file: str | os.PathLike[str], delimiter: str = "", decimal: str = "
     return Flight._of(_core.read_csv(name_of(file), delimiter, decimal))
 
 
+@checked
 def stream_csv(
     file: str | os.PathLike[str],
     folder: str | os.PathLike[str] = "",

@@ -8,11 +8,13 @@ import os
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from sepcal.arguments import checked
 from sepcal.models import Vector, _to_vector
 from sepcal.states_module import states_module
 from sepcal.whole_files import name_of
 
 
+@checked
 @dataclass(frozen=True, kw_only=True)
 class Aircraft:
     """What an aircraft is to its equations of motion.
@@ -60,6 +62,7 @@ class Aircraft:
         return json.dumps(entries)
 
 
+@checked
 def read_aircraft(file: str | os.PathLike[str]) -> Aircraft:
     """Reads an aircraft as the app takes it with --geometry.
 

@@ -8,16 +8,18 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Unpack
 
 from sepcal import _core
+from sepcal.arguments import Missing, checked
 from sepcal.columns import Array, Columns, labels_in, take_columns, take_drivers
 from sepcal.fit_options import FitOptions
 from sepcal.options import spelled_out, to_core, to_names
-from sepcal.own_effect import CoreEffect, name_effects, to_core_effects
+from sepcal.own_effect import CoreEffect, given_effects, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 
 
+@checked
 class Intervals(Page, _core.Intervals):
     """`print(intervals)` shows the table; `intervals["w_n"]` is one parameter's."""
 
@@ -30,6 +32,12 @@ class Intervals(Page, _core.Intervals):
         "profile_upper",
         "unit",
     )
+
+    def __getitem__(self, name: str) -> _core.ParameterInterval:
+        """One parameter's. Raises Error, a KeyError too, listing the names."""
+        if not isinstance(name, str) or name not in self.parameters:
+            raise Missing(f"there is no {name!r}; there are: {', '.join(self.parameters)}")
+        return self.parameters[name]
 
     def to_json(self) -> str:
         """The JSON; of a calibration's, what the app's `intervals` prints."""
@@ -79,6 +87,7 @@ class Intervals(Page, _core.Intervals):
         ]
 
 
+@checked
 class Prediction(_core.Prediction):
     """What a fit says of N samples, in the outputs' units and the model's order of outputs.
 
@@ -124,6 +133,7 @@ class Prediction(_core.Prediction):
 
 
 @spelled_out()
+@checked
 def profile_intervals(
     model: AnyModel,
     data: Columns,
@@ -157,6 +167,7 @@ def profile_intervals(
 
 
 @spelled_out()
+@checked
 def predict(
     model: AnyModel,
     data: Columns,
@@ -197,8 +208,8 @@ def as_fitted(
     model = as_model(model)
     if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
-    own = to_core_effects(options.get("effects") or ())
-    options["effects"] = name_effects(options.get("effects") or ())
+    own = to_core_effects(given_effects(options))
+    options["effects"] = name_effects(given_effects(options))
     names = [setting.name for setting in fit.effects]
     there = set(data)
     needed = [*model._columns_in(data), *({"time"} & there)]

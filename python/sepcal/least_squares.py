@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.matrices import (
     UNCHANGED,
@@ -61,6 +62,7 @@ class LeastSquares:
     cost: float
 
 
+@checked
 def iterate_least_squares(
     sample: Sample,
     count: int,
@@ -122,6 +124,7 @@ def iterate_least_squares(
     return LeastSquares(status, taken, at, covariance, root, values, cost)
 
 
+@checked
 class RecursiveLeastSquares:
     """y = H p + e, sample by sample; the answer is that of all samples at once.
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.differences import CENTRAL, Fan, step_sizes
 from sepcal.matrices import finite, to_covariance, to_matrix, to_number, to_vector
@@ -19,6 +20,7 @@ from sepcal.states_module import states_module
 MOST_STEPS = 1e6  # the compiled code's limit
 
 
+@checked
 def matrix_exponential(A: ArrayLike) -> Array:
     """exp(A), (n, n), by scaling, a Pade approximant and squaring (S 3.9).
 
@@ -44,6 +46,7 @@ class Transition:
     x: Array | None = None
 
 
+@checked
 def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
     """A step of x' = F x + w, exact (Van Loan 1978).
 
@@ -80,6 +83,7 @@ class DiscreteInputs:
     end: Array
 
 
+@checked
 def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
     """What u adds to x' = F x + B u over a step of time. Held inputs lag linear ones by half of it.
 
@@ -100,6 +104,7 @@ def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
 Rate = Callable[[Array, float], ArrayLike]
 
 
+@checked
 def propagate(
     rate: Rate,
     x: ArrayLike,

@@ -6,12 +6,20 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from sepcal import _core
+from sepcal.arguments import Missing, checked
 from sepcal.plots import Backend, Theme
 from sepcal.printing import page_of
 
 
+@checked
 class ManyFit(_core.ManyFit):
     """A joint fit: `fit["lambda_va"]` is a shared parameter, `fit.flights["a.csv"]` a flight."""
+
+    def __getitem__(self, name: str) -> _core.Parameter:
+        """A shared parameter. Raises Error, a KeyError too, listing the names."""
+        if not isinstance(name, str) or name not in self.shared:
+            raise Missing(f"there is no {name!r}; all share: {', '.join(self.shared)}")
+        return self.shared[name]
 
     @property
     def success(self) -> bool:

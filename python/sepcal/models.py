@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array, Columns, labels_in, take_columns
 from sepcal.states_module import states_module
 
@@ -134,6 +135,7 @@ class ScalarExample2(Model):
         super().__init__(_core.scalar_example_2())
 
 
+@checked
 class Accelerometer(Model):
     """Three accelerometers against the true specific force in body axes (Eqs. A1 to A4).
 
@@ -145,6 +147,7 @@ class Accelerometer(Model):
         super().__init__(_core.accelerometer())
 
 
+@checked
 class DampedSinusoids(Model):
     """Damped sinusoids out of samples, what Prony's method looks for.
 
@@ -168,6 +171,7 @@ class DampedSinusoids(Model):
         return {"modes": self.modes}
 
 
+@checked
 class FiveHoleProbe(Model):
     """A five-hole Pitot probe against the inertial velocity (Eqs. 36-42).
 
@@ -196,6 +200,7 @@ class FiveHoleProbe(Model):
         return {"k_alpha": self.k_alpha, "k_beta": self.k_beta, "lever_arm": self.lever_arm}
 
 
+@checked
 class VaneBoom(Model):
     """A boom with two vanes and a Pitot tube, against the velocity over the ground.
 
@@ -220,6 +225,7 @@ class VaneBoom(Model):
         return {"lever_arm": self.lever_arm}
 
 
+@checked
 class PitotStatic(Model):
     """A plain Pitot-static tube against the ground velocity: z = s_va |v_ground - W| + c_va.
 
@@ -234,6 +240,7 @@ class PitotStatic(Model):
         super().__init__(_core.pitot_static())
 
 
+@checked
 class Magnetometer(Model):
     """A three-axis magnetometer against a known field (Eqs. B1-B3), or against its strength.
 

@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sepcal._core import Error
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.plots import Backend, Theme
 from sepcal.printing import aligned, page_of
@@ -40,6 +41,7 @@ class ParameterStudy:
     coverage_limits: tuple[float, float]  # of that share, Clopper & Pearson, 95 %
 
 
+@checked
 class MonteCarlo:
     """A study. `print(study)` shows the table.
 

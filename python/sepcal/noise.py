@@ -8,12 +8,14 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal._core import NoiseFit, NoiseModel
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.matrices import to_vector, to_whole_number
 
 Segments = Sequence[tuple[int, int]]  # first row, row after the last
 
 
+@checked
 def fit_noise(
     e: ArrayLike,
     *,
@@ -49,6 +51,7 @@ def fit_noise(
     return found
 
 
+@checked
 def whiten(model: NoiseModel, e: ArrayLike, *, segments: Segments | None = None) -> Array:
     """W e, white with unit variance where e is of the model, (N,); NaN outside the segments.
 
@@ -62,6 +65,7 @@ def whiten(model: NoiseModel, e: ArrayLike, *, segments: Segments | None = None)
     return _core.whiten(model, to_vector("e", e), _rows(segments))
 
 
+@checked
 def simulate_noise(
     model: NoiseModel, rows: int | Sequence[int], *, draws: int = 1, seed: int = 0
 ) -> Array:

@@ -11,15 +11,23 @@ from typing import Any, Literal
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import Missing, checked
 from sepcal.columns import Array
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
 
 
+@checked
 class Fit(Page, _core.Fit):
     """The two-stage batch estimate. `print(fit)` shows the table; `fit["w_n"]` is one parameter."""
 
     _shown = ("name", "value", "standard_error", "unit")
+
+    def __getitem__(self, name: str) -> _core.Parameter:
+        """The parameter. Raises Error, a KeyError too, listing the names."""
+        if not isinstance(name, str) or name not in self.parameters:
+            raise Missing(f"there is no {name!r}; there are: {', '.join(self.parameters)}")
+        return super().__getitem__(name)
 
     @property
     def success(self) -> bool:

@@ -13,6 +13,7 @@ from contextlib import closing, contextmanager
 from numbers import Integral
 
 from sepcal._core import Error
+from sepcal.arguments import checked
 from sepcal.executors import Executors, stream
 from sepcal.monte_carlo_results import MonteCarlo, check_truth
 from sepcal.progress import progress_bar
@@ -31,6 +32,7 @@ Progress = Callable[[int, int], None]
 TOGETHER = 512  # trials that fill the lanes, and are done at once
 
 
+@checked
 def monte_carlo(
     trial: TrialFunction,
     trials: int | Iterable[int] = 1000,
@@ -93,6 +95,7 @@ def monte_carlo(
     return MonteCarlo(records, truth)
 
 
+@checked
 def stream_trials(
     trial: TrialFunction,
     trials: int | Iterable[int] = 1000,

@@ -9,12 +9,13 @@ from typing import Any, Unpack
 from numpy.random import Generator
 
 from sepcal._core import Error
+from sepcal.arguments import checked
 from sepcal.calibration import Calibration
 from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
 from sepcal.models import FiveHoleProbe, Magnetometer, PitotStatic
 from sepcal.options import to_core
-from sepcal.own_effect import name_effects
+from sepcal.own_effect import given_effects, name_effects
 from sepcal.simulation import SimulatedFlight, simulate
 
 ROTATION = ("eta_x", "eta_y", "eta_z")
@@ -22,6 +23,7 @@ ROWS_TO_TRY = 20
 SEEDS = 2**63
 
 
+@checked
 class SimulatedTrial:
     """simulate() with a seed of the trial's own, then fit(), for sepcal.monte_carlo().
 
@@ -56,7 +58,7 @@ class SimulatedTrial:
         if "seed" in self.simulation:
             raise Error("simulation has a seed; each trial has one of its own, leave it out")
         self.options: FitOptions = {**options, "threads": options.get("threads") or 1}
-        to_core({**self.options, "effects": name_effects(self.options.get("effects") or ())})
+        to_core({**self.options, "effects": name_effects(given_effects(self.options))})
         tried = simulate(model, **{**self.simulation, "rows": ROWS_TO_TRY})
         if any(tried.truth.get(name) for name in ROTATION if name not in model.parameters):
             raise Error(

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import checked, shown
 from sepcal.flight import Flight
 from sepcal.geometry import Aircraft
 from sepcal.states_module import states_module
@@ -35,6 +36,7 @@ class SimulatedProbe(Protocol):
     def _settings(self) -> dict[str, float | tuple[float, ...]]: ...
 
 
+@checked
 def simulate(
     model: SimulatedProbe | Aircraft | str,
     *,
@@ -86,6 +88,8 @@ def simulate(
     if isinstance(model, Aircraft):
         whole["aircraft"] = json.loads(model.to_json())
     elif not isinstance(model, str):
+        if not hasattr(model, "_settings"):
+            raise _core.Error(f"{shown(model)} can't be flown; give a probe, or the name of one")
         whole["options"] = {**whole.get("options", {}), **model._settings()}
     try:
         text = json.dumps(whole, allow_nan=False)

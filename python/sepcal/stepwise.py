@@ -12,6 +12,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal._core import StepwiseStep
+from sepcal.arguments import checked
 from sepcal.diagnosis import Diagnosis
 from sepcal.options import to_names
 from sepcal.pages import Page, Row
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 Fitted = TypeVar("Fitted")
 
 
+@checked
 class Stepwise(Page, Generic[Fitted]):
     """Effects added one after another until nothing passed. `print()` shows the steps.
 

@@ -10,6 +10,7 @@ from typing import Any, Literal, Unpack
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import Missing, Misuse, checked
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight
@@ -22,6 +23,7 @@ from sepcal.states_module import states_module
 REFUSED = ("effects", *LOG_CHOICE)  # of a fit's options
 
 
+@checked
 class Track(_core.Track):
     """Estimates against time. `track["Za"]` is one of them, (M,).
 
@@ -72,7 +74,7 @@ class Track(_core.Track):
 
     def _place(self, name: str) -> int:
         if name not in self.names:
-            raise KeyError(f"there is no '{name}'; there are: {', '.join(self.names)}")
+            raise Missing(f"there is no {name!r}; there are: {', '.join(self.names)}")
         return self.names.index(name)
 
     def __repr__(self) -> str:
@@ -90,6 +92,7 @@ def units_of_states(units: Mapping[str, str]) -> dict[str, str]:
 
 
 @spelled_out(without=(*REFUSED, "process_noise", "method"))
+@checked
 def track(  # type: ignore[misc]  # its process_noise drives the filter, not errors of a fit
     model: AnyModel,
     data: Columns,
@@ -145,7 +148,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
         )
     for name in options:
         if name not in FitOptions.__annotations__:
-            raise TypeError(f"track() has no option '{name}'; help(sepcal.track) shows what it has")
+            raise Misuse(f"track() has no option '{name}'; help(sepcal.track) shows what it has")
     for name in REFUSED:
         if options.get(name):
             raise _core.Error(f"track() knows no {name}; leave it out")

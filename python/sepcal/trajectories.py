@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack
 
 from sepcal import _core
+from sepcal.arguments import Misuse, checked
 from sepcal.geometry import Aircraft
 from sepcal.models import Model, Vector, _to_vector
 from sepcal.states_module import states_module
@@ -79,7 +80,7 @@ def complete(options: TrajectoryOptions) -> dict[str, Any]:
     for name in options:
         if name not in STATE_OPTIONS:
             known = ", ".join(STATE_OPTIONS)
-            raise TypeError(f"a trajectory has no option '{name}'; it has: {known}")
+            raise Misuse(f"a trajectory has no option '{name}'; it has: {known}")
     whole: dict[str, Any] = {**STATE_OPTIONS, **options}
     for name in ("measured", "outputs"):
         if isinstance(whole[name], str):
@@ -97,6 +98,7 @@ def to_core_options(options: dict[str, Any]) -> _states.TrajectoryOptions:
     return core
 
 
+@checked
 class ShortPeriod(TrajectoryModel):
     """The short period of an aircraft, for small changes about a trimmed flight.
 
@@ -115,6 +117,7 @@ class ShortPeriod(TrajectoryModel):
         super().__init__(states_module().short_period(to_core_options(whole)), whole)
 
 
+@checked
 class FlightPath(TrajectoryModel):
     """Flight path reconstruction, or data compatibility (Eqs. B4-B9).
 

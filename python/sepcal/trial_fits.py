@@ -11,13 +11,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.fit_options import FitOptions
+from sepcal.matrices import to_numbers
 from sepcal.options import refuse_log_choice, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.plots import Backend, Theme
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class TrialFits:
     """The fits of K trials."""
@@ -53,6 +56,7 @@ class TrialFits:
 
 
 @spelled_out(without=["effects"])
+@checked
 def fit_trials(
     model: AnyModel,
     design: Columns,
@@ -107,7 +111,7 @@ def fit_trials(
 
 
 def _to_trials(name: str, values: ArrayLike) -> Array:
-    array = np.asarray(values, dtype=np.float64)
+    array = to_numbers(f"the measurements of '{name}'", values)
     if array.ndim != 2:
         raise _core.Error(
             f"the measurements of '{name}' have the shape {array.shape}; give a row a trial, (K, N)"

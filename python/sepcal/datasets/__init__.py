@@ -8,6 +8,7 @@ from importlib import resources
 from typing import Literal
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.flight import read_csv
 from sepcal.simulation import SimulatedFlight
 
@@ -21,6 +22,7 @@ def __dir__() -> list[str]:
     return __all__
 
 
+@checked
 def load(name: Literal["aircraft", "magnetometer", "pitot"] | str) -> SimulatedFlight:
     """A flight of the simulator, read by instruments that wander, round and are wrong at times.
 

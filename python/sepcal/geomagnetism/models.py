@@ -14,6 +14,7 @@ from functools import lru_cache
 from typing import Any
 
 from sepcal import _core
+from sepcal.arguments import checked
 
 Date = datetime.date | datetime.datetime | str | float
 NANOTESLA = 1e-3  # [uT]
@@ -56,6 +57,7 @@ class EarthField:
         return math.degrees(math.atan2(self.down, math.hypot(self.north, self.east)))
 
 
+@checked
 def earth_field(latitude: float, longitude: float, altitude: float, date: Date) -> EarthField:
     """The Earth's field by the World Magnetic Model of the day.
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from sepcal import _core
 from sepcal.aircraft_fits import AircraftFit
+from sepcal.arguments import checked
 from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import AnyFlight, to_flight
@@ -24,6 +25,7 @@ from sepcal.whole_files import name_of, write_whole
 Path = str | os.PathLike[str]
 
 
+@checked
 def report(
     calibrations: Calibration | AircraftFit | Sequence[Calibration | AircraftFit],
     file: Path,
