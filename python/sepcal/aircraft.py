@@ -36,6 +36,15 @@ class Aero:
         equations: {coefficient: [regressors]} in their place: {"Cm": ["1", "alpha", "q_hat",
             "elevator", "alpha^2"]}.
         window: Of the local cubic that differentiates p, q and r [s]; 0: seven rows.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> flight = sepcal.simulate(aircraft, rows=400)
+        >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CY"), flight)
+        >>> abs(fit["CY_beta"].value / flight.truth["CY_beta"] - 1) < 0.1
+        True
     """
 
     def __init__(
@@ -81,6 +90,15 @@ class RigidAircraft:
         gravity: At the place of the flight [m/s^2].
         window: Of the local cubic that differentiates rates for the start [s]; 0: seven rows.
         **options: TrajectoryOptions; `measured` and `outputs` are the axes' own where left out.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> flight = sepcal.simulate(aircraft, rows=400)
+        >>> fit = sepcal.fit(sepcal.RigidAircraft(aircraft, "longitudinal"), flight)
+        >>> abs(fit["Cm_q"].value / flight.truth["Cm_q"] - 1) < 0.1
+        True
     """
 
     def __init__(

@@ -116,7 +116,9 @@ def fits(value: object, hint: Any) -> bool:  # noqa: ANN401
     if origin in LISTS:
         return _fits_list(value, within[0])
     if origin is tuple:
-        return _fits_list(value, within[0]) and len(value) == len(within)  # type: ignore[arg-type]
+        is_any_length = within[-1] is Ellipsis
+        fit = _fits_list(value, within[0])
+        return fit and (is_any_length or len(value) == len(within))  # type: ignore[arg-type]
     if origin is Mapping:
         if not isinstance(value, Mapping):
             return False
@@ -161,7 +163,7 @@ def words(hint: Any) -> str:  # noqa: ANN401
         return "one of " + ", ".join(repr(word) for word in within)
     if origin is Mapping:
         return f"{{{words(within[0]).removeprefix('a ')}: {words(within[1]).removeprefix('a ')}}}"
-    if origin in LISTS:
+    if origin in LISTS or (origin is tuple and within[-1] is Ellipsis):
         return f"a list, each {words(within[0])}"
     if origin is tuple:
         return f"({', '.join(words(one).removeprefix('a ') for one in within)})"

@@ -36,6 +36,14 @@ class Calibration(Fit):
     """A Fit of a probe, with all that later verbs need: probe, options, and the flight fitted.
 
     It pickles as its JSON and its own effects, without the flight and stage one's samples.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> print(f"{base['w_e'].value:.1f} +- {base['w_e'].standard_error:.1f} {base['w_e'].unit}")
+        2.5 +- 0.2 m/s
+        >>> base.names
+        ('s_va', 'c_va', 'w_n', 'w_e', 'w_d')
     """
 
     core: _core.Calibration
@@ -93,7 +101,18 @@ class Calibration(Fit):
         return {one.flight: one for one in self.core.departures}
 
     def departed(self, level: float = 0.01) -> list[str]:
-        """Labels of flights that depart from the others, by p below `level`; the surest first."""
+        """Labels of flights that depart from the others, by p below `level`; the surest first.
+
+        Example:
+            >>> def fly(seed):
+            ...     flown = sepcal.simulate("pitot-static", rows=200, seed=seed)
+            ...     return sepcal.Flight(flown, name=f"day {seed}")
+            ...
+            >>> flights = [fly(1), fly(2), fly(3)]
+            >>> both = sepcal.fit_jointly(sepcal.PitotStatic(), flights)
+            >>> both.departed()  # none: all fly one tube
+            []
+        """
         found = [label for label, one in self.departures.items() if one.p < level]
         return sorted(found, key=lambda label: self.departures[label].p)
 
@@ -121,6 +140,13 @@ class Calibration(Fit):
 
         Raises:
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> worst = max(base.compare().where, key=lambda misfit: misfit.rmse)
+            >>> worst.segment, worst.output, round(worst.rmse, 1)
+            ('wind_circle_1', 'airspeed', 0.6)
         """
         core, chosen = self._on(flight, "compare(", known=True)
         return Comparison(core.compare(chosen._core), self.noise)
@@ -197,6 +223,13 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, as in fit(); an effect to inject that the flight can't make, or beside
                 auto; most below 1 or without auto; one of only that the flight can't make.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> found = base.diagnose()
+            >>> found.verdict, found.advice.effect, flight.effects
+            ('effect_missing', 'wind[altitude_m]', ('wind[altitude_m]',))
         """
         chosen = self._or_fitted(flight, "diagnose(")
         injected = to_injected(inject, auto=auto)
@@ -231,6 +264,13 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, as in fit(); an effect that it has already; no flight given where the
                 calibration was loaded.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> step = base.add("wind[altitude_m]").history[0]
+            >>> round(step.rmse_before, 2), round(step.rmse_after, 2)
+            (0.46, 0.31)
         """
         chosen = self._or_fitted(flight, "add(..., ")
         name = effect.name if isinstance(effect, Effect) else effect
@@ -259,6 +299,13 @@ class Calibration(Fit):
         Raises:
             Error: Another flight, a parameter that there isn't or that is fixed, a level outside
                 (0, 1).
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> interval = base.intervals(names=["s_va"])["s_va"]
+            >>> interval.profile[0] < interval.value < interval.profile[1], interval.ends
+            (True, ('crossed', 'crossed'))
         """
         chosen = self._or_fitted(flight, "intervals(")
         return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
@@ -286,9 +333,16 @@ class Calibration(Fit):
 
         Raises:
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> low, high = base.predict(level=0.99).measurement_band  # of the airspeed [m/s]
+            >>> bool((high > low).all())
+            True
         """
         chosen = self._or_fitted(flight, "predict(")
-        return Prediction(self.core.predict(chosen._core, level), self.noise)
+        return Prediction(self.core.predict(chosen._core, level), list(self.noise))
 
     def plot(
         self,
@@ -315,6 +369,12 @@ class Calibration(Fit):
         Raises:
             Error: Another word for one of these; bad input, as in compare(); "steps" where nothing
                 was added; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> figure = base.plot()  # figure.show(), or the last line of a notebook's cell
+            >>> base.plot("noise", backend="matplotlib", theme="dark").savefig(folder / "noise.png")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_calibration, picture_fit, picture_steps
@@ -332,6 +392,16 @@ class Calibration(Fit):
 
         Raises:
             Error: Other flights than those, or one that was changed; a fit of one flight.
+
+        Example:
+            >>> def fly(seed):
+            ...     flown = sepcal.simulate("pitot-static", rows=200, seed=seed)
+            ...     return sepcal.Flight(flown, name=f"day {seed}")
+            ...
+            >>> flights = [fly(1), fly(2), fly(3)]
+            >>> both = sepcal.fit_jointly(sepcal.PitotStatic(), flights)
+            >>> both.join(flights).rows
+            600
         """
         return Flight._of(
             self.core.rejoin([self._to_flight(one, "join([")._core for one in flights])
@@ -370,6 +440,12 @@ class Calibration(Fit):
 
         Raises:
             Error: Bad input, or a calibration that can't be inverted.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> sorted(base.apply(flight))
+            ['airspeed_cal_mps']
         """
         core, chosen = self._on(flight, "apply(", known=False)
         return core.apply(chosen._core)
@@ -380,11 +456,25 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, columns of those names that are there already, an output that can't be
                 written.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> np.savetxt(folder / "log.csv", [[150.0, 1.19]], header="dp_pa,rho_kgpm3",
+            ...            delimiter=",", comments="")
+            >>> base.apply_to_file(folder / "log.csv", folder / "corrected.csv").rows
+            1
         """
         return self.core.apply_to_file(name_of(file), name_of(output))
 
     def save(self, file: Path) -> None:
-        """Writes to_json() to a file that appears whole or not at all; raises Error if it can't."""
+        """Writes to_json() to a file that appears whole or not at all; raises Error if it can't.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.save(folder / "base.json")  # for sepcal.load(), and for the apps
+        """
         self.core.save(name_of(file))
 
     def to_json(self) -> str:
@@ -427,6 +517,13 @@ def load(
     Raises:
         Error: The file can't be read, is no calibration, or is of another schema version; an effect
             that it doesn't have; another model.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> base.save(folder / "base.json")
+        >>> sepcal.load(folder / "base.json")["w_n"].value == base["w_n"].value
+        True
     """
     if _is_of_aircraft(file):
         return read_fit(file)

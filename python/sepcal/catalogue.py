@@ -15,6 +15,10 @@ def effects(model: AnyModel | str) -> list[_core.CataloguedEffect]:
     Raises:
         Error: A model that takes no flight; a name that is none of PROBES: of a probe that ships,
             as "magnetometer" (with attitude) and "magnetometer-norm" (its field's strength alone).
+
+    Example:
+        >>> [effect.name for effect in sepcal.effects("magnetometer") if "current" in effect.name]
+        ['bias[current_a]', 'bias[delay(current_a)]', 'eddy_currents']
     """
     if not isinstance(model, str):
         return _core.effects_of(as_model(model)._core)

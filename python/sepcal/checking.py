@@ -20,7 +20,13 @@ from sepcal.trajectories import FlightPath
 
 @checked
 class FlightCheck(Page, _core.FlightCheck):
-    """A log, column by column, and notes. `print(check)` shows the page."""
+    """A log, column by column, and notes. `print(check)` shows the page.
+
+    Example:
+        >>> check = sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+        >>> [column.header for column in check.columns if not column.quantity]  # channels
+        ['altitude_m', 'throttle', 'current_a']
+    """
 
     _shown = ("concern", "found", "effect", "advice")
     flight: Flight | None = None  # None where it was pickled
@@ -89,6 +95,12 @@ def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCh
 
     Raises:
         Error: A model that takes no flight.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> check = sepcal.check(sepcal.PitotStatic(), flight)
+        >>> check.refused, [note.kind for note in check.notes], round(check.rate)
+        ('', [], 4)
     """
     if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")

@@ -48,6 +48,11 @@ def concatenate(
 
     Raises:
         Error: No model, one with a state, a name that belongs to two, an input in two units.
+
+    Example:
+        >>> both = sepcal.concatenate(mag=sepcal.Magnetometer(), acc=sepcal.Accelerometer())
+        >>> both.outputs
+        ('mag.mx', 'mag.my', 'mag.mz', 'acc.ax', 'acc.ay', 'acc.az')
     """
     parts = [*(("", sensor) for sensor in sensors), *labelled.items()]
     return Concatenation([(label, as_model(sensor)) for label, sensor in parts])

@@ -33,7 +33,15 @@ STANDS_OUT = ("found", "slow_change", "undecided")
 
 @checked
 class Diagnosis(Page, _core.Diagnosis):
-    """A verdict and the ranked candidates. `print(diagnosis)` shows the table."""
+    """A verdict and the ranked candidates. `print(diagnosis)` shows the table.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> found = base.diagnose()
+        >>> found["wind[altitude_m]"].status, found.verdict
+        ('found', 'effect_missing')
+    """
 
     _shown = (
         *("name", "status", "p_adjusted", "predicted_drop", "held_out_gain", "visibility"),

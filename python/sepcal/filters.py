@@ -43,6 +43,15 @@ class SmoothedPass:
         covariance: Of x, (N, n_x, n_x).
         noise: Of the steps between samples, (N - 1, n_w): where it is large the model fails.
         noise_covariance: (N - 1, n_w, n_w).
+
+    Example:
+        >>> level = sepcal.Filter(x=[0.0], P=[[100.0]], keep_pass=True)
+        >>> for reading in (1.0, 1.0, 1.0):
+        ...     _ = level.update([reading], H=[[1.0]], R=[[0.01]])
+        ...     level.predict(Phi=[[1.0]], Q=[[0.0]])
+        ...
+        >>> level.smooth().x.round(2).ravel().tolist()
+        [1.0, 1.0, 1.0, 1.0]
     """
 
     x: Array
@@ -90,6 +99,14 @@ class Filter:
 
     Attributes:
         log_likelihood: Of all outputs so far, the sum of ln p(e), S 5.4.
+
+    Example:
+        >>> level = sepcal.Filter(x=[0.0], P=[[100.0]])
+        >>> for reading in (1.1, 0.9, 1.0):
+        ...     _ = level.update([reading], H=[[1.0]], R=[[0.01]])
+        ...
+        >>> level.x.round(2).tolist()
+        [1.0]
     """
 
     def __init__(

@@ -68,6 +68,12 @@ def fit(
         Error: Bad input or misuse: one line that names the culprit and the way out.
         TypeError: An option that there isn't, or of the wrong kind.
         Exception: What at() of a model in Python raises, as it is.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight, fix={"w_d": 0.0})
+        >>> base.status, round(base["w_e"].value, 1), flight.truth["w_e"]
+        ('converged', 2.5, 2.4)
     """
     if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the data: sepcal.fit(model, flight)")

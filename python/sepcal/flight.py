@@ -67,6 +67,11 @@ class Flight(Mapping[str, Array]):
     Raises:
         Error: A column of another length, without a name, not one-dimensional or not of numbers; a
             name or a label that no UTF-8 is of.
+
+    Example:
+        >>> flight = sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [150.0, 151.0]}, ["a", "b"])
+        >>> flight.columns, float(flight["dp_pa"].mean()), flight.maneuvers
+        (('time_s', 'dp_pa'), 150.5, ['a', 'b'])
     """
 
     def __init__(
@@ -151,6 +156,11 @@ class Flight(Mapping[str, Array]):
         Raises:
             Error: A column that there isn't; another word for one of these; the library is not
                 installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> drawn = flight.plot(["dp_pa", "altitude_m"], backend="matplotlib")
+            >>> drawn.savefig(folder / "flight.png")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_records import picture_flight
@@ -257,6 +267,7 @@ def _cell(text: str) -> str:
     return '"' + text.replace('"', '""') + '"'
 
 
+@checked
 def read(data: AnyFlight, table: str | None = None) -> Flight:
     """A flight of anything: a file of any form, or a table in memory.
 
@@ -273,6 +284,10 @@ def read(data: AnyFlight, table: str | None = None) -> Flight:
     Raises:
         Error: No such file, damaged, of another form, larger unpacked than sepcal takes, without a
             table, with several that could be meant; a library that is not installed.
+
+    Example:
+        >>> sepcal.read({"time_s": [0.0, 0.1], "dp_pa": [150.0, 151.0]}).rows
+        2
     """
     if isinstance(data, str | os.PathLike):
         return Flight._of(read_file(name_of(data), table))
@@ -297,6 +312,12 @@ def read_csv(file: str | os.PathLike[str], delimiter: str = "", decimal: str = "
     Raises:
         Error: No such file, binary, no rows, or one that can be read in two ways; the message names
             file and line.
+
+    Example:
+        >>> np.savetxt(folder / "log.csv", [[0.0, 150.2], [0.1, 151.0]], header="time_s,dp_pa",
+        ...            delimiter=",", comments="")
+        >>> sepcal.read_csv(folder / "log.csv").columns
+        ('time_s', 'dp_pa')
     """
     return Flight._of(_core.read_csv(name_of(file), delimiter, decimal))
 
@@ -318,6 +339,12 @@ def stream_csv(
 
     Raises:
         Error: As read_csv(), and where the disc is full.
+
+    Example:
+        >>> np.savetxt(folder / "log.csv", [[0.0, 150.2], [0.1, 151.0]], header="time_s,dp_pa",
+        ...            delimiter=",", comments="")
+        >>> sepcal.stream_csv(folder / "log.csv", folder).rows
+        2
     """
     place = name_of(folder) if folder else ""
     return Flight._of(_core.stream_csv(name_of(file), place, delimiter, decimal))

@@ -33,6 +33,13 @@ class Aircraft:
         vane: Where airspeed, alpha and beta are read [m].
         rate_reference: What makes the pitch rate a number, q_hat: q c/V or q c/2V. CX_q, CZ_q and
             Cm_q of the first are half those of the second. Every result says which.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> aircraft.span
+        10.9
     """
 
     area: float
@@ -68,6 +75,14 @@ def read_aircraft(file: str | os.PathLike[str]) -> Aircraft:
 
     Raises:
         Error: The file can't be read or is no aircraft: the entry that is wrong.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> _ = (folder / "aircraft.json").write_text(aircraft.to_json())
+        >>> sepcal.read_aircraft(folder / "aircraft.json") == aircraft
+        True
     """
     entries = json.loads(states_module().read_aircraft(name_of(file)))
     inertia = entries.get("inertia_kgm2")

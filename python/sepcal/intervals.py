@@ -21,7 +21,17 @@ from sepcal.results import Fit
 
 @checked
 class Intervals(Page, _core.Intervals):
-    """`print(intervals)` shows the table; `intervals["w_n"]` is one parameter's."""
+    """`print(intervals)` shows the table; `intervals["w_n"]` is one parameter's.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> intervals = base.intervals(level=0.9, names=["w_n", "w_e"])
+        >>> intervals
+        <sepcal.Intervals of 90 %: 2 parameters>
+        >>> intervals["w_n"].gaussian[0] < intervals["w_n"].value
+        True
+    """
 
     _shown = (
         "name",
@@ -93,6 +103,13 @@ class Prediction(_core.Prediction):
 
     Attributes:
         outputs: Their names; pickled they are lost.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> prediction = base.predict()
+        >>> prediction.outputs, prediction.value.shape
+        (('airspeed',), (480, 1))
     """
 
     outputs: tuple[str, ...] = ()
@@ -160,6 +177,20 @@ def profile_intervals(
     Raises:
         Error: The fit is not that of the model, the data and the options; a parameter that there
             isn't or that is fixed; a level outside (0, 1).
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> data = {"v": v, "z": 2.0 * v + np.sin(9.0 * v)}
+        >>> fit = sepcal.fit(Line(), data)
+        >>> low, high = sepcal.profile_intervals(Line(), data, fit)["k"].profile
+        >>> low < 2.0 < high
+        True
     """
     laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=True)
     names = to_names("names", names or ())
@@ -188,10 +219,22 @@ def predict(
 
     Raises:
         Error: Bad input, a fit of another model, a level outside (0, 1).
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> fit = sepcal.fit(Line(), {"v": v, "z": 2.0 * v + np.sin(9.0 * v)})
+        >>> float(sepcal.predict(Line(), {"v": [100.0]}, fit).value.round()[0, 0])
+        200.0
     """
     laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=False)
     predicted = _core.predict(laid, columns, labels, core, own, fit, level)
-    return Prediction(predicted, fit.noise)
+    return Prediction(predicted, list(fit.noise))
 
 
 def as_fitted(

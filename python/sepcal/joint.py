@@ -69,6 +69,16 @@ def fit_jointly(
         Error: Bad input, as in fit(); one flight, two of one name, an own parameter that there
             isn't.
         TypeError: An option that there isn't, or of the wrong kind.
+
+    Example:
+        >>> def fly(seed):
+        ...     flown = sepcal.simulate("pitot-static", rows=200, seed=seed)
+        ...     return sepcal.Flight(flown, name=f"day {seed}")
+        ...
+        >>> flights = [fly(1), fly(2), fly(3)]
+        >>> both = sepcal.fit_jointly(sepcal.PitotStatic(), flights)
+        >>> both.names, both.flights
+        (('s_va', 'c_va', 'w_n', 'w_e', 'w_d'), ['day 1', 'day 2', 'day 3'])
     """
     if isinstance(flights, Flight | str):
         raise _core.Error("flights is one flight; give several in a list, or fit() the one")

@@ -89,6 +89,16 @@ def iterate_least_squares(
     Raises:
         Error: Another shape, what is not finite, a W that is not positive definite.
         Exception: What `sample` raises, as it is.
+
+    Example:
+        >>> t = np.linspace(0.0, 2.0, 20)
+        >>> y = 3.0 * np.exp(-0.7 * t)
+        >>> def sample(k, p):
+        ...     decay = np.exp(-p[1] * t[k])
+        ...     return y[k] - p[0] * decay, [decay, -p[0] * t[k] * decay]
+        ...
+        >>> sepcal.iterate_least_squares(sample, 20, [1.0, 0.5]).p.round(6).tolist()
+        [3.0, 0.7]
     """
     last: tuple[int, Array, Array, Array] = (0, np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)))
 
@@ -136,6 +146,14 @@ class RecursiveLeastSquares:
         covariance: Of those to begin with, (n, n).
         form: What is kept: the root of the information, the information itself (S 4.13), or its
             inverse (S 4.14, corrected).
+
+    Example:
+        >>> line = sepcal.RecursiveLeastSquares(2)
+        >>> for t in (0.0, 1.0, 2.0):
+        ...     line.absorb([[1.0, t]], [3.0 + 2.0 * t])
+        ...
+        >>> line.solution.round(6).tolist()
+        [3.0, 2.0]
     """
 
     def __init__(

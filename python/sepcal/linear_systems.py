@@ -26,6 +26,10 @@ def matrix_exponential(A: ArrayLike) -> Array:
 
     Raises:
         Error: A is not square, or not finite, or exp(A) is beyond the range of numbers.
+
+    Example:
+        >>> sepcal.matrix_exponential([[0.0, 0.1], [0.0, 0.0]]).tolist()
+        [[1.0, 0.1], [0.0, 1.0]]
     """
     exponential: Array = states_module().matrix_exponential(finite("A", to_matrix("A", A)))
     return _in_range("exp(A)", exponential)
@@ -61,6 +65,11 @@ def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
     Raises:
         Error: Another shape, what is not finite, a density that is no covariance, a step back in
             time, or one so long that the result is beyond the range of numbers.
+
+    Example:
+        >>> step = sepcal.discretise([[0.0, 1.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], 0.1)
+        >>> step.Phi.tolist()
+        [[1.0, 0.1], [0.0, 1.0]]
     """
     Phi, Q = states_module().discretise(
         finite("F", to_matrix("F", F)), to_covariance("density", density), _duration("dt", dt)
@@ -94,6 +103,10 @@ def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
 
     Raises:
         Error: Another shape, or what is not finite.
+
+    Example:
+        >>> sepcal.discretise_inputs([[-1.0]], [[1.0]], 0.1).held.round(4).tolist()  # 1 - exp(-0.1)
+        [[0.0952]]
     """
     parts = states_module().discretise_inputs(
         finite("F", to_matrix("F", F)), finite("B", to_matrix("B", B)), _duration("dt", dt)
@@ -137,6 +150,11 @@ def propagate(
     Raises:
         Error: Another shape, or what is not finite, also of what the functions give.
         Exception: What the functions raise, as it is.
+
+    Example:
+        >>> step = sepcal.propagate(lambda x, t: -x, [1.0], [[0.0]], 0.0, 0.1)
+        >>> step.x.round(4).tolist(), step.Phi.round(4).tolist()  # exp(-0.1)
+        ([0.9048], [[0.9048]])
     """
     state = finite("x", to_vector("x", x))
     identity = np.eye(len(state))

@@ -67,6 +67,17 @@ def fit_many(
         Error: Bad input or misuse: one line that names the flight, the culprit and the way out.
         TypeError: An option that there isn't, or of the wrong kind.
         Exception: What at() of a model in Python raises, as it is.
+
+    Example:
+        >>> days = {
+        ...     f"day {seed}": sepcal.simulate(
+        ...         "pitot-static", rows=200, seed=seed, parameters={"w_n": float(seed)}
+        ...     )
+        ...     for seed in (1, 2, 3)
+        ... }
+        >>> fleet = sepcal.fit_many(sepcal.PitotStatic(), days, own=["w_n"])
+        >>> [round(fleet.flights[day]["w_n"].value) for day in days]
+        [1, 2, 3]
     """
     sources = _name(flights)
     model = as_model(model)

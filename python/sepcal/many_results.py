@@ -13,7 +13,16 @@ from sepcal.printing import page_of
 
 @checked
 class ManyFit(_core.ManyFit):
-    """A joint fit: `fit["lambda_va"]` is a shared parameter, `fit.flights["a.csv"]` a flight."""
+    """A joint fit: `fit["lambda_va"]` is a shared parameter, `fit.flights["a.csv"]` a flight.
+
+    Example:
+        >>> flights = [sepcal.simulate("pitot-static", rows=200, seed=seed) for seed in (1, 2)]
+        >>> fleet = sepcal.fit_many(sepcal.PitotStatic(), flights)
+        >>> fleet
+        <sepcal.ManyFit converged: 2 flights, 400 rows, 5 shared parameters>
+        >>> fleet.departed()
+        []
+    """
 
     def __getitem__(self, name: str) -> _core.Parameter:
         """A shared parameter. Raises Error, a KeyError too, listing the names."""

@@ -122,14 +122,24 @@ class Model:
 
 
 class ScalarExample1(Model):
-    """z = (1 + a) cos(eta + b) + c (Eqs. 21, 22); linear a, c, nonlinear b [rad]."""
+    """z = (1 + a) cos(eta + b) + c (Eqs. 21, 22); linear a, c, nonlinear b [rad].
+
+    Example:
+        >>> sepcal.ScalarExample1().nonlinear
+        ('b',)
+    """
 
     def __init__(self) -> None:
         super().__init__(_core.scalar_example_1())
 
 
 class ScalarExample2(Model):
-    """z = (1 + a) cos(eta (1 + b) + c) + d (Eq. 33); linear a, d, nonlinear b, c [rad]."""
+    """z = (1 + a) cos(eta (1 + b) + c) + d (Eq. 33); linear a, d, nonlinear b, c [rad].
+
+    Example:
+        >>> sepcal.ScalarExample2().nonlinear
+        ('b', 'c')
+    """
 
     def __init__(self) -> None:
         super().__init__(_core.scalar_example_2())
@@ -141,6 +151,10 @@ class Accelerometer(Model):
 
     z = C_eta (I + D) f + n: scale errors lambda_x, lambda_y, lambda_z, biases n_x, n_y, n_z
     [m/s^2], small misalignments eta_x, eta_y, eta_z [rad]. triads.Triad puts others together.
+
+    Example:
+        >>> sepcal.Accelerometer().outputs
+        ('ax', 'ay', 'az')
     """
 
     def __init__(self) -> None:
@@ -161,6 +175,10 @@ class DampedSinusoids(Model):
 
     Raises:
         Error: Another number of modes.
+
+    Example:
+        >>> sepcal.DampedSinusoids(1).nonlinear
+        ('frequency_1', 'damping_1')
     """
 
     def __init__(self, modes: int = 1) -> None:
@@ -185,6 +203,11 @@ class FiveHoleProbe(Model):
 
     Raises:
         Error: A sensitivity is not positive.
+
+    Example:
+        >>> probe = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
+        >>> probe.outputs
+        ('vn', 've', 'vd')
     """
 
     name = "five-hole"
@@ -213,6 +236,10 @@ class VaneBoom(Model):
 
     Raises:
         Error: The lever arm has other than three numbers, or one is not finite.
+
+    Example:
+        >>> sepcal.VaneBoom().outputs
+        ('vn', 've', 'vd')
     """
 
     name = "vane-boom"
@@ -232,6 +259,10 @@ class PitotStatic(Model):
     The wind W is nonlinear; its component w_d is held at zero unless fit(..., free=["w_d"]) frees
     it. A Calibration's `derived` has lambda_va and b_va, which correct the reading as in the
     five-hole probe. A flight logs airspeed_mps, or dp_pa and the density.
+
+    Example:
+        >>> sepcal.PitotStatic().linear
+        ('s_va', 'c_va')
     """
 
     name = "pitot-static"
@@ -257,6 +288,12 @@ class Magnetometer(Model):
 
     Raises:
         Error: Two of these contradict each other, or the strength is not positive.
+
+    Example:
+        >>> flight = sepcal.datasets.load("magnetometer")
+        >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+        >>> round(base["n_x"].value), flight.truth["n_x"]
+        (15, 12.0)
     """
 
     def __init__(

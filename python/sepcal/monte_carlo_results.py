@@ -55,6 +55,12 @@ class MonteCarlo:
     Raises:
         Error: An index is there twice; the truth names what no trial estimates. Later: the trials
             gave no estimates, or of other parameters.
+
+    Example:
+        >>> study = sepcal.monte_carlo(lambda rng: {"mean": rng.normal(2.0, size=100).mean()}, 50,
+        ...                            truth={"mean": 2.0}, progress=False)
+        >>> study.summary()["mean"].trials, abs(study.summary()["mean"].bias) < 0.1
+        (50, True)
     """
 
     def __init__(

@@ -50,6 +50,14 @@ class Effect:
     Raises:
         Error: A name that is none, or a function that can't be called; when it is used, a port that
             there isn't, a name that is taken, columns of another shape or not finite.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> gust = sepcal.Effect("gust", lambda log: np.sin(log["time"]), port="wind")
+        >>> added = base.add(gust)
+        >>> abs(added["gust.n"].value) < 3 * added["gust.n"].standard_error  # there is none
+        True
     """
 
     name: str

@@ -19,7 +19,22 @@ from sepcal.plots import Backend, Theme
 
 @checked
 class Fit(Page, _core.Fit):
-    """The two-stage batch estimate. `print(fit)` shows the table; `fit["w_n"]` is one parameter."""
+    """The two-stage batch estimate. `print(fit)` shows the table; `fit["w_n"]` is one parameter.
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> fit = sepcal.fit(Line(), {"v": v, "z": 2.0 * v})
+        >>> fit
+        <sepcal.Fit converged, 1 parameters, 50 rows>
+        >>> round(fit["k"].value, 6)
+        2.0
+    """
 
     _shown = ("name", "value", "standard_error", "unit")
 

@@ -78,6 +78,15 @@ def monte_carlo(
             can't be sent to it.
         KeyboardInterrupt: As ever; pending trials are cancelled, those that threads or an executor
             left open are at are waited for. stream_trials() lets one keep what was done.
+
+    Example:
+        >>> trial = sepcal.SimulatedTrial(sepcal.PitotStatic(), simulation={"rows": 100})
+        >>> study = sepcal.monte_carlo(trial, 40, seed=1, progress=False)
+        >>> study
+        <sepcal.MonteCarlo 40 trials: 40 converged>
+        >>> low, high = study.summary()["w_n"].coverage_limits
+        >>> low < 0.95 < high
+        True
     """
     indices = _to_indices(trials)
     records: list[TrialRecord] = []
@@ -109,6 +118,14 @@ def stream_trials(
 
     MonteCarlo(records) makes a study of them, of those there are. Close it, or leave the loop, and
     pending trials are cancelled. Arguments and errors are those of monte_carlo().
+
+    Example:
+        >>> def trial(rng):
+        ...     return {"mean": rng.normal(size=100).mean()}
+        ...
+        >>> means = [record.value["mean"] for record in sepcal.stream_trials(trial, 50)]
+        >>> len(means), round(float(np.mean(means)), 1) + 0.0
+        (50, 0.0)
     """
     indices = _to_indices(trials)
     if not isinstance(seed, Integral):

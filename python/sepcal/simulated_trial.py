@@ -39,6 +39,12 @@ class SimulatedTrial:
         Error: As simulate() and fit() refuse an argument; the model is no probe that can be flown;
             a Magnetometer with a field's strength flies with a rotation, which it can't see, so
             that its truth means other parameters than the fit.
+
+    Example:
+        >>> trial = sepcal.SimulatedTrial(sepcal.PitotStatic(), simulation={"rows": 60})
+        >>> fit, truth = trial(np.random.default_rng(1))
+        >>> fit.rows, truth["w_n"]
+        (60, -3.8)
     """
 
     def __init__(

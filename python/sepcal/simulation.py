@@ -22,6 +22,10 @@ class SimulatedFlight(Flight):
         truth: The parameters' true values by name, those of hidden effects among them
             ("wind[altitude_m].n"). It may be given as the parameters of another simulation.
         effects: Names of the hidden effects, aliases resolved.
+
+    Example:
+        >>> sepcal.simulate("pitot-static", rows=100).truth["w_n"]
+        -3.8
     """
 
     truth: dict[str, float]
@@ -73,6 +77,11 @@ def simulate(
     Raises:
         Error: A parameter, output, effect, driver or probe that there isn't, sizes of another
             number than the effect's components, or a value out of range.
+
+    Example:
+        >>> flight = sepcal.simulate("magnetometer", rows=300, hide={"bias[current_a]": 0.2})
+        >>> flight.rows, flight.effects, flight.truth["bias[current_a].x"]
+        (300, ('bias[current_a]',), 0.2)
     """
     kind, deviations = (noise, {}) if isinstance(noise, str) else ("white", dict(noise))
     given = dict(parameters or {})

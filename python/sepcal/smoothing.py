@@ -27,6 +27,13 @@ class Smoothed(_core.SmoothedRecord):
     Attributes:
         time: (N,) [s]; None where the data have none, and where it was pickled.
         units: Of states and outputs by name, as far as they are known; pickled they are lost.
+
+    Example:
+        >>> flight = sepcal.datasets.load("aircraft")
+        >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+        >>> smoothed = path.smooth({"ax": 0.05})
+        >>> smoothed["u"].shape == (flight.rows,)
+        True
     """
 
     time: Array | None = None

@@ -35,6 +35,13 @@ class Stepwise(Page, Generic[Fitted]):
             to be added, as real fits have it), "fit_failed" (that of the next one).
         reason: The same in a sentence.
         diagnosis: Of the last fit.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> steps = base.diagnose(auto=True)
+        >>> steps.effects, steps.end
+        (['wind[altitude_m]'], 'nothing_found')
     """
 
     _shown = ("name", "p_adjusted", "partial_f", "predicted_drop", "found_drop", "rmse_after")

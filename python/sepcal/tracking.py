@@ -30,6 +30,12 @@ class Track(_core.Track):
     Attributes:
         units: Of states, parameters and outputs by name, as far as they are known; pickled they are
             lost.
+
+    Example:
+        >>> flight = sepcal.datasets.load("aircraft")
+        >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+        >>> path.track(start_rows=200).names[:3]
+        ('u', 'v', 'w')
     """
 
     units: Mapping[str, str] = MappingProxyType({})

@@ -108,6 +108,10 @@ class ShortPeriod(TrajectoryModel):
 
     Args:
         **options: TrajectoryOptions.
+
+    Example:
+        >>> sepcal.ShortPeriod().nonlinear
+        ('Za', 'Ma', 'Mq')
     """
 
     states = ("alpha", "q")
@@ -139,6 +143,12 @@ class FlightPath(TrajectoryModel):
     Raises:
         Error: An output that there isn't; when fitted, data in degrees, az of the other sign, or a
             pitch beyond 85 deg.
+
+    Example:
+        >>> flight = sepcal.datasets.load("aircraft")
+        >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+        >>> path.status, path.model
+        ('converged', 'path')
     """
 
     def __init__(

@@ -82,6 +82,18 @@ def fit_trials(
 
     Raises:
         Error: Bad input or misuse: one line that names the culprit and the way out.
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> fits = sepcal.fit_trials(Line(), {"v": v}, {"z": [2.0 * v, 3.0 * v]})
+        >>> fits.estimates.round(6).ravel().tolist()
+        [2.0, 3.0]
     """
     model = as_model(model)
     if model.runs_in_python:

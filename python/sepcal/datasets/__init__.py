@@ -38,6 +38,11 @@ def load(name: Literal["aircraft", "magnetometer", "pitot"] | str) -> SimulatedF
 
     Raises:
         Error: Another name.
+
+    Example:
+        >>> flight = sepcal.datasets.load("magnetometer")
+        >>> flight.effects, flight.truth["n_x"]
+        (('bias[current_a]',), 12.0)
     """
     if name not in NAMES:
         raise _core.Error(f"there is no data set {name!r}; there are: {', '.join(NAMES)}")

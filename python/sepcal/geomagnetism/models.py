@@ -73,6 +73,11 @@ def earth_field(latitude: float, longitude: float, altitude: float, date: Date) 
 
     Raises:
         Error: A place off the Earth, a day outside the models' spans, no pygeomag.
+
+    Example:
+        >>> field = sepcal.earth_field(47.4, 8.5, 400.0, 2025.5)
+        >>> round(field.north), round(field.down)  # uT
+        (22, 43)
     """
     if not -90 <= latitude <= 90:
         raise _core.Error(f"a latitude of {latitude:g} deg is off the Earth: -90 to 90")

@@ -55,6 +55,13 @@ def report(
     Raises:
         Error: No calibration, several models, no flight, bad input as in Calibration.compare(),
             plotly is not installed, a file that can't be written.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> sepcal.report([base, base.add("wind[altitude_m]")], folder / "report.html")
+        >>> (folder / "report.html").stat().st_size > 1_000_000  # Plotly is in it
+        True
     """
     chain: list[Any] = (
         [calibrations] if isinstance(calibrations, Calibration | AircraftFit) else [*calibrations]
