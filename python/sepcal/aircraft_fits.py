@@ -249,7 +249,11 @@ class AircraftFit(Fit):
             <sepcal.Intervals of 95 %: 1 parameters>
         """
         chosen = self._or_fitted(flight, "intervals(")
-        return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
+        return Intervals(
+            self.core.intervals(
+                chosen._core, level, to_names("names", () if names is None else names)
+            )
+        )
 
     def add(
         self, effect: str, flight: AnyFlight | Sequence[AnyFlight] | None = None
@@ -430,6 +434,21 @@ class AircraftFit(Fit):
         chosen = self._or_fitted(flight, "plot(flight=")
         given = process_noise or {}
         return as_figure(picture_aircraft(self, what, chosen, given), backend, theme)
+
+    def report(self, file: Path, flight: AnyFlight | None = None, **options: Any) -> None:  # noqa: ANN401
+        """Writes its report to one HTML page, as sepcal.report(), which takes several as well.
+
+        Args:
+            file: To write.
+            flight: To report on [the one that was fitted].
+            **options: Those of sepcal.report(): files, process_noise, progress.
+
+        Raises:
+            Error: As sepcal.report().
+        """
+        from sepcal.reporting import report
+
+        report(self, file, flight, **options)
 
     @property
     def _units(self) -> dict[str, str]:

@@ -20,13 +20,20 @@ from sepcal.printing import in_line
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 
+Found = TypeVar("Found")
+
 SHOWN = 60  # characters of a value
+OF_VALUES = (TypeError, ValueError, KeyError, AttributeError, IndexError, OverflowError)
 INCOMPATIBLE = "incompatible function arguments"  # in what the compiled module says
 LISTS = (Sequence, Iterable, Collection, list)
 
 
 class Misuse(_core.Error, TypeError):
     """An Error of an argument's kind or name: a TypeError too, as Python itself calls it."""
+
+
+class NotInstalled(_core.Error, ImportError):
+    """An Error of a library that isn't there: an ImportError too."""
 
 
 class Missing(_core.Error, KeyError):
@@ -36,11 +43,22 @@ class Missing(_core.Error, KeyError):
         return str(self.args[0])
 
 
+def found_by(find: Callable[[str], Found], name: object) -> Found:
+    """What stands under a name. Raises Missing, as `find` says it by a KeyError."""
+    if not isinstance(name, str):
+        raise Missing(f"{shown(name)} is no name; give a text")
+    try:
+        return find(name)
+    except KeyError as error:
+        raise Missing(*error.args) from None
+
+
 def checked(thing: Thing) -> Thing:
     """A decorator of a function, or of a class for its public methods and its construction.
 
-    Numbers, words, lists and mappings of these are checked against the annotations; what is more
-    than that, a flight or a model, is left to who takes it.
+    What is refused in its own words stays so. Where something else is raised, and an argument is
+    not what the annotations say, that argument is to blame; else it is left as it is, as what a
+    caller's own function raises.
     """
     if isinstance(thing, type):
         for name, method in list(vars(thing).items()):
@@ -55,32 +73,35 @@ def _checked(function: Callable[..., Any], owner: str) -> Callable[..., Any]:
     signature = inspect.signature(function)
     called = owner if function.__name__ == "__init__" else function.__name__
 
-    @functools.cache
-    def hints() -> dict[str, Any]:
-        return {
-            name: hint
-            for name, parameter in signature.parameters.items()
-            if parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL)
-            and (hint := _resolve(function, parameter.annotation)) is not None
-        }
-
     @functools.wraps(function)
     def checking(*positional: object, **named: object) -> object:
         try:
-            given = signature.bind(*positional, **named).arguments
-        except TypeError as error:
-            raise Misuse(f"{called}(): {error}") from None
-        for name, hint in hints().items():
-            if name in given and not fits(given[name], hint):
-                raise Misuse(f"{called}(): {name} is {shown(given[name])}; give {words(hint)}")
-        try:
             return function(*positional, **named)
-        except TypeError as error:
-            if INCOMPATIBLE not in str(error):
-                raise
-        plain = {name: at for name, at in given.items() if isinstance(at, int | float | str)}
-        told = ", ".join(f"{name}={shown(at)}" for name, at in plain.items())
-        raise Misuse(f"{called}(): one of these can't be taken: {told or 'what was given'}")
+        except _core.Error:
+            raise
+        except OF_VALUES as error:
+            _blame(error, positional, named)
+            raise
+
+    def _blame(error: Exception, positional: tuple[object, ...], named: dict[str, object]) -> None:
+        """Raises Misuse where an argument is to blame."""
+        try:
+            given = signature.bind(*positional, **named).arguments
+        except TypeError as unbound:
+            raise Misuse(f"{called}(): {unbound}") from None
+        for name, value in given.items():
+            parameter = signature.parameters[name]
+            if parameter.kind in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL):
+                continue
+            hint = _resolve(function, parameter.annotation)
+            if hint is not None and not fits(value, hint):
+                raise Misuse(f"{called}(): {name} is {shown(value)}; give {words(hint)}") from error
+        if INCOMPATIBLE in str(error):
+            plain = {name: at for name, at in given.items() if isinstance(at, int | float | str)}
+            told = ", ".join(f"{name}={shown(at)}" for name, at in plain.items())
+            raise Misuse(
+                f"{called}(): one of these can't be taken: {told or 'what was given'}"
+            ) from None
 
     return checking
 

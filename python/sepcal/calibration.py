@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, TypeGuard, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeGuard, overload
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 from sepcal.stepwise import Stepwise, diagnosis_options, to_injected
 from sepcal.whole_files import name_of
+
+if TYPE_CHECKING:
+    from sepcal.exporting import Exported
 
 Path = str | os.PathLike[str]
 
@@ -308,7 +311,11 @@ class Calibration(Fit):
             (True, ('crossed', 'crossed'))
         """
         chosen = self._or_fitted(flight, "intervals(")
-        return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
+        return Intervals(
+            self.core.intervals(
+                chosen._core, level, to_names("names", () if names is None else names)
+            )
+        )
 
     def certify(
         self, flight: AnyFlight | None = None, *, tolerance: float = 1e-6, boxes: int = 20000
@@ -386,6 +393,45 @@ class Calibration(Fit):
             return as_figure(picture_steps(self), backend, theme)
         core, chosen = self._on(flight, "plot(flight=", known=True)
         return as_figure(picture_calibration(self, what, core, chosen), backend, theme)
+
+    def export(self, file: Path, to: str, **options: Any) -> Exported:  # noqa: ANN401
+        """Writes what a vehicle loads of it, as sepcal.export(), which says what the options are.
+
+        Args:
+            file: To write.
+            to: "c", "cpp", "px4" or "ardupilot".
+            **options: Those of sepcal.export().
+
+        Raises:
+            Error: As sepcal.export().
+
+        Example:
+            >>> flight = sepcal.datasets.load("magnetometer")
+            >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+            >>> written = base.export(folder / "compass.h", "c", single=True)
+        """
+        from sepcal.exporting import export
+
+        return export(self, file, to, **options)
+
+    def report(self, file: Path, flight: AnyFlight | None = None, **options: Any) -> None:  # noqa: ANN401
+        """Writes its report to one HTML page, as sepcal.report(), which takes several as well.
+
+        Args:
+            file: To write.
+            flight: To report on [the one that was fitted].
+            **options: Those of sepcal.report(): diagnosis, files, progress.
+
+        Raises:
+            Error: As sepcal.report().
+
+        Example:
+            >>> base = sepcal.fit(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+            >>> base.report(folder / "report.html")
+        """
+        from sepcal.reporting import report
+
+        report(self, file, flight, **options)
 
     def join(self, flights: Sequence[AnyFlight]) -> Flight:
         """The flights of a joint fit, in any order, as the one that it is of.

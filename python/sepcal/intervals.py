@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Unpack
 
 from sepcal import _core
-from sepcal.arguments import Missing, checked
+from sepcal.arguments import checked, found_by
 from sepcal.columns import Array, Columns, labels_in, take_columns, take_drivers
 from sepcal.fit_options import FitOptions
 from sepcal.options import spelled_out, to_core, to_names
@@ -45,9 +45,7 @@ class Intervals(Page, _core.Intervals):
 
     def __getitem__(self, name: str) -> _core.ParameterInterval:
         """One parameter's. Raises Error, a KeyError too, listing the names."""
-        if not isinstance(name, str) or name not in self.parameters:
-            raise Missing(f"there is no {name!r}; there are: {', '.join(self.parameters)}")
-        return self.parameters[name]
+        return found_by(super().__getitem__, name)
 
     def to_json(self) -> str:
         """The JSON; of a calibration's, what the app's `intervals` prints."""
@@ -193,7 +191,7 @@ def profile_intervals(
         True
     """
     laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=True)
-    names = to_names("names", names or ())
+    names = to_names("names", () if names is None else names)
     return Intervals(_core.profile_intervals(laid, columns, labels, core, own, fit, level, names))
 
 

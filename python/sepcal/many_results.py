@@ -6,9 +6,10 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from sepcal import _core
-from sepcal.arguments import Missing, checked
+from sepcal.arguments import checked, found_by
 from sepcal.plots import Backend, Theme
 from sepcal.printing import page_of
+from sepcal.tables import table_of
 
 
 @checked
@@ -26,9 +27,7 @@ class ManyFit(_core.ManyFit):
 
     def __getitem__(self, name: str) -> _core.Parameter:
         """A shared parameter. Raises Error, a KeyError too, listing the names."""
-        if not isinstance(name, str) or name not in self.shared:
-            raise Missing(f"there is no {name!r}; all share: {', '.join(self.shared)}")
-        return self.shared[name]
+        return found_by(super().__getitem__, name)
 
     @property
     def success(self) -> bool:
@@ -96,6 +95,12 @@ class ManyFit(_core.ManyFit):
         lines += [f"{name} is left out: {reason}" for name, reason in self.left_out.items()]
         lines.append(f"{self.status}: {self.message}" if self.message else self.status)
         return page_of(lines)
+
+    def _repr_html_(self) -> str:
+        """A small table of what all share, for notebooks."""
+        columns = ("name", "value", "standard_error", "unit")
+        rows = [parameter._asdict() for parameter in self.shared.values()]
+        return table_of(repr(self).strip("<>"), columns, rows)
 
     def __repr__(self) -> str:
         return (

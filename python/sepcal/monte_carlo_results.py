@@ -18,6 +18,7 @@ from sepcal.columns import Array
 from sepcal.plots import Backend, Theme
 from sepcal.printing import aligned, page_of
 from sepcal.quantiles import binomial_limits, student_quantile
+from sepcal.tables import table_of
 from sepcal.trials import Estimates, TrialRecord, in_order, without_bulk
 
 MOST_FAILURES_SHOWN = 3
@@ -217,6 +218,15 @@ class MonteCarlo:
         if more := len(unsaid) - len(shown):
             lines.append(f"and {more} more failed; `failed` has the record of each")
         return page_of(lines)
+
+    def _repr_html_(self) -> str:
+        """A small table, for notebooks."""
+        columns = ("name", "truth", "bias", "rms_error", "standard_error", "coverage", "trials")
+        try:
+            rows = [vars(one) for one in self.summary().values()]
+        except Error:
+            rows = []
+        return table_of(_headline(self), columns, rows)
 
     def __repr__(self) -> str:
         return f"<sepcal.MonteCarlo {_headline(self)}>"

@@ -75,6 +75,8 @@ def to_core(options: Mapping[str, Any]) -> _core.Options:
             continue
         try:
             setattr(core, name, dict(value) if isinstance(value, Mapping) else value)
+        except _core.Error:
+            raise
         except (TypeError, ValueError, OverflowError):
             shape = f"give {form}; " if (form := _shape(ROWS[name])) else ""
             raise Misuse(

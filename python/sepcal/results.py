@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sepcal import _core
-from sepcal.arguments import Missing, checked
+from sepcal.arguments import checked, found_by
 from sepcal.columns import Array
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
@@ -40,9 +40,7 @@ class Fit(Page, _core.Fit):
 
     def __getitem__(self, name: str) -> _core.Parameter:
         """The parameter. Raises Error, a KeyError too, listing the names."""
-        if not isinstance(name, str) or name not in self.parameters:
-            raise Missing(f"there is no {name!r}; there are: {', '.join(self.parameters)}")
-        return super().__getitem__(name)
+        return found_by(super().__getitem__, name)
 
     @property
     def success(self) -> bool:

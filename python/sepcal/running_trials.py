@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from numbers import Integral
+from typing import Literal
 
 from sepcal._core import Error
 from sepcal.arguments import checked
@@ -40,7 +41,7 @@ def monte_carlo(
     seed: int = 0,
     truth: Mapping[str, float] | None = None,
     executor: Executors = None,
-    progress: bool | Progress | None = None,
+    progress: bool | Literal["tqdm"] | Progress | None = None,
     batch: int | None = None,
     keep_fits: bool = False,
 ) -> MonteCarlo:
@@ -63,8 +64,8 @@ def monte_carlo(
         executor: A concurrent.futures.Executor, left open; a function that makes one, as
             ProcessPoolExecutor does, which is also replaced where a dying worker breaks it; None:
             one trial after the other, here.
-        progress: A bar on standard error, None: where that is a terminal; or a function of the
-            numbers of trials done and in all.
+        progress: A bar on standard error, None: where that is a terminal, and in a notebook;
+            "tqdm": that of tqdm.auto; or a function of the numbers of trials done and in all.
         batch: Trials a task; more than one where a trial takes less than some ten milliseconds.
             None: one, or 512 of a DesignTrial whose trials are fitted side by side.
         keep_fits: The records hold whole fits, with covariance and samples, instead of Estimates.
@@ -169,7 +170,7 @@ def _to_indices(trials: int | Iterable[int]) -> range | list[int]:
 
 
 @contextmanager
-def _progress_of(progress: bool | Progress | None) -> Iterator[Progress]:
+def _progress_of(progress: bool | Literal["tqdm"] | Progress | None) -> Iterator[Progress]:
     """What to call after each trial."""
     if callable(progress):
         yield progress

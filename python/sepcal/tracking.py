@@ -19,6 +19,7 @@ from sepcal.own_state_model import AnyModel, as_model
 from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 from sepcal.states_module import states_module
+from sepcal.tables import table_of
 
 REFUSED = ("effects", *LOG_CHOICE)  # of a fit's options
 
@@ -82,6 +83,20 @@ class Track(_core.Track):
         if name not in self.names:
             raise Missing(f"there is no {name!r}; there are: {', '.join(self.names)}")
         return self.names.index(name)
+
+    def _repr_html_(self) -> str:
+        """The last estimates as a small table, for notebooks."""
+        rows = [
+            {
+                "name": name,
+                "estimate": float(self.estimates[-1, i]),
+                "standard_deviation": float(self.standard_deviations[-1, i]),
+                "unit": self.units.get(name, ""),
+            }
+            for i, name in enumerate(self.names)
+        ]
+        caption = f"sepcal.Track: the last of {len(self.rows)} rows"
+        return table_of(caption, ("name", "estimate", "standard_deviation", "unit"), rows)
 
     def __repr__(self) -> str:
         return f"<sepcal.Track {', '.join(self.names)}: {len(self.rows)} rows>"

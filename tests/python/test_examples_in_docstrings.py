@@ -22,15 +22,14 @@ pytest.importorskip("pygeomag", reason="an example has the Earth's field: pip in
 # What a call gives and nobody makes is shown where it is given; a model's contract and a model of
 # one's own are shown as whole programs, which other tests run.
 SHOWN_ELSEWHERE = {
-    "AddedRegressor", "AeroCoefficients", "Certificate", "Concatenation", "CostBound", "DiscreteInputs",
-    "EarthField",
-    "Estimates", "Failure", "FitOptions", "LeastSquares", "LogContents", "LoggedFlight",
-    "ParameterStudy", "SmoothedPass", "Transition", "TrajectoryModel", "TrajectoryOptions",
-    "TrialFits", "TrialRecord", "TwoSteps", "Validation",
+    "AddedRegressor", "AeroCoefficients", "Certificate", "Concatenation", "CostBound",
+    "DiscreteInputs", "EarthField", "Estimates", "Failure", "FitOptions", "LeastSquares",
+    "LogContents", "LoggedFlight", "ParameterStudy", "Transition", "TrajectoryModel",
+    "TrajectoryOptions", "TrialFits", "TrialRecord", "TwoSteps", "Validation",
     "DesignTrial", "Model", "OwnModel", "SeparableModel", "StateModel", "Trajectory",
 }  # fmt: skip
-# Takes a log of an autopilot, two logs with clocks of their own, a long search, or a model with a state of one's own: other tests
-# run what the documentation shows of them.
+# Takes a log of an autopilot, two logs with clocks of their own, a long search, or a model with a
+# state of one's own: other tests run what the documentation shows of them.
 WITHOUT = {
     "aero_coefficients", "bound_cost", "certify", "join", "list_log", "read_log", "smooth", "track",
     "validate",
