@@ -7,6 +7,7 @@ import functools
 import inspect
 import numbers
 import os
+import re
 import sys
 import types
 import typing
@@ -24,7 +25,7 @@ Found = TypeVar("Found")
 
 SHOWN = 60  # characters of a value
 OF_VALUES = (TypeError, ValueError, KeyError, AttributeError, IndexError, OverflowError)
-INCOMPATIBLE = "incompatible function arguments"  # in what the compiled module says
+INCOMPATIBLE = re.compile("incompatible (function|constructor) arguments")  # of the compiled
 LISTS = (Sequence, Iterable, Collection, list)
 
 
@@ -96,7 +97,7 @@ def _checked(function: Callable[..., Any], owner: str) -> Callable[..., Any]:
             hint = _resolve(function, parameter.annotation)
             if hint is not None and not fits(value, hint):
                 raise Misuse(f"{called}(): {name} is {shown(value)}; give {words(hint)}") from error
-        if INCOMPATIBLE in str(error):
+        if INCOMPATIBLE.search(str(error)):
             plain = {name: at for name, at in given.items() if isinstance(at, int | float | str)}
             told = ", ".join(f"{name}={shown(at)}" for name, at in plain.items())
             raise Misuse(

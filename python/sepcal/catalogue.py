@@ -2,8 +2,10 @@
 """The physical effects that sepcal knows, model by model."""
 
 from sepcal import _core
+from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.arguments import checked
 from sepcal.own_state_model import AnyModel, as_model
+from sepcal.trajectories import FlightPath
 
 PROBES = tuple(name for name, _ in _core.shipped_probes())
 
@@ -20,6 +22,11 @@ def effects(model: AnyModel | str) -> list[_core.CataloguedEffect]:
         >>> [effect.name for effect in sepcal.effects("magnetometer") if "current" in effect.name]
         ['bias[current_a]', 'bias[delay(current_a)]', 'eddy_currents']
     """
+    if isinstance(model, Aero | RigidAircraft | FlightPath) or model == "aircraft":
+        raise _core.Error(
+            "an aircraft's effects are regressors, Cm[alpha^2], and its sensors', imu_late: "
+            "diagnose() tries them, and `sepcal-aircraft effects` lists them"
+        )
     if not isinstance(model, str):
         return _core.effects_of(as_model(model)._core)
     if model not in PROBES:

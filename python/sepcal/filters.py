@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal._core import Innovation
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.matrices import (
     UNCHANGED,
@@ -78,6 +79,7 @@ class SmoothedPass:
         return as_figure(picture_pass(self), backend, theme)
 
 
+@checked
 class Filter:
     """A Kalman filter; with linearisations of a nonlinear system the extended one.
 

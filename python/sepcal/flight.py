@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Flight logs: the table of a CSV file, or arrays under the same headers."""
 
-import html
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -12,6 +11,8 @@ import numpy as np
 from sepcal import _core
 from sepcal.arguments import Missing, checked
 from sepcal.columns import Array, Columns, by_name, to_column, to_labels
+from sepcal.markup import html as markup
+from sepcal.markup import join
 from sepcal.options import to_names
 from sepcal.plots import Backend, Theme
 from sepcal.printing import as_utf8, in_line
@@ -19,6 +20,7 @@ from sepcal.reading import AIR, MAGNETIC, read_file, reading_for
 from sepcal.reading.extras import load
 from sepcal.reading.frames import is_frame, of_frame
 from sepcal.reading.units import quantity_of
+from sepcal.tables import table_of
 from sepcal.whole_files import name_of, write_whole
 
 if TYPE_CHECKING:
@@ -219,31 +221,21 @@ class Flight(Mapping[str, Array]):
 
     def _repr_html_(self) -> str:
         """A notebook's view: the first rows, and what the reader decided."""
-        rows = self.rows
-        shown = min(rows, ROWS_SHOWN)
-        labels = {"maneuver": self.maneuvers[:shown]} if self.maneuvers else {}
+        shown = min(self.rows, ROWS_SHOWN)
         columns: dict[str, Sequence[object]] = {
-            header: [f"{value:.6g}" for value in self[header][:shown]] for header in self
+            header: self[header][:shown].tolist() for header in self
         }
-        columns |= labels
-        head = "".join(f"<th>{_escaped(header)}</th>" for header in columns)
-        body = "".join(
-            "<tr>" + "".join(f"<td>{_escaped(cell)}</td>" for cell in cells) + "</tr>"
-            for cells in zip(*columns.values(), strict=True)
+        if self.maneuvers:
+            columns["maneuver"] = self.maneuvers[:shown]
+        rows = (
+            dict(zip(columns, cells, strict=True)) for cells in zip(*columns.values(), strict=True)
         )
-        notes = "".join(f"<li>{_escaped(note)}</li>" for note in self.notes)
-        return (
-            f"<p>{_escaped(self.name)}: {rows} rows</p>"
-            f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-            + (f"<ul>{notes}</ul>" if notes else "")
-        )
+        notes = join("", (markup("<li>{}</li>", note) for note in self.notes))
+        table = table_of(f"{self.name}: {self.rows} rows", list(columns), rows, as_they_are=True)
+        return join("", [table, markup("<ul>{}</ul>", notes) if notes else ""])
 
 
 AnyFlight: TypeAlias = Flight | Columns | ArrowTable | Dataset | str | os.PathLike[str]
-
-
-def _escaped(text: object) -> str:
-    return html.escape(in_line(text))
 
 
 def csv_of(flight: Flight) -> str:

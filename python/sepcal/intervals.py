@@ -9,7 +9,7 @@ from typing import Any, Unpack
 
 from sepcal import _core
 from sepcal.arguments import checked, found_by
-from sepcal.columns import Array, Columns, labels_in, take_columns, take_drivers
+from sepcal.columns import Array, Columns, by_name, labels_in, take_columns, take_drivers
 from sepcal.fit_options import FitOptions
 from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import CoreEffect, given_effects, name_effects, to_core_effects
@@ -252,6 +252,7 @@ def as_fitted(
     own = to_core_effects(given_effects(options))
     options["effects"] = name_effects(given_effects(options))
     names = [setting.name for setting in fit.effects]
+    data = by_name(data)
     there = set(data)
     needed = [*model._columns_in(data), *({"time"} & there)]
     if measured:

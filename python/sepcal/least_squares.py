@@ -165,7 +165,7 @@ class RecursiveLeastSquares:
         if isinstance(p, Integral):
             if p < 1:
                 raise _core.Error(f"p is {p}; give the number of parameters, or where they begin")
-            begin = np.zeros(int(p))
+            begin = np.zeros(to_whole_number("p", int(p)))
         else:
             begin = finite("p", to_vector("p", p))
             if covariance is None:

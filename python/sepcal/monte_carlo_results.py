@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sepcal._core import Error
-from sepcal.arguments import checked
+from sepcal.arguments import checked, shown
 from sepcal.columns import Array
 from sepcal.plots import Backend, Theme
 from sepcal.printing import aligned, page_of
@@ -134,6 +134,8 @@ class MonteCarlo:
         Raises:
             Error: There is no such name, or its arrays have different shapes.
         """
+        if not isinstance(name, str):
+            raise Error(f"{shown(name)} is no name; give a text")
         if self.values and all(isinstance(value, Mapping) for value in self.values):
             columns = [value.get(name) for value in self.values]
             if all(column is not None for column in columns):

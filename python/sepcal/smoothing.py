@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sepcal import _core
-from sepcal.arguments import Missing, checked
+from sepcal.arguments import Missing, checked, shown
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns, to_column
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.plots import Backend, Theme
@@ -91,8 +91,8 @@ class Smoothed(_core.SmoothedRecord):
 
     def __getitem__(self, state: str) -> Array:
         """x(k|N) of one state, (N,)."""
-        if state not in self.states:
-            raise Missing(f"there is no state {state!r}; there are: {', '.join(self.states)}")
+        if not isinstance(state, str) or state not in self.states:
+            raise Missing(f"there is no state {shown(state)}; there are: {', '.join(self.states)}")
         return np.asarray(self.x[:, self.states.index(state)])
 
     def __repr__(self) -> str:

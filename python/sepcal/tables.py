@@ -8,9 +8,19 @@ from collections.abc import Iterable, Mapping, Sequence
 from sepcal.markup import Html, html, join
 
 
-def table_of(caption: object, columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> Html:
-    """Rows by column; a number has six digits, and what is undefined a dash."""
-    head = join("", (html("<th>{}</th>", name.replace("_", " ")) for name in columns))
+def table_of(
+    caption: object,
+    columns: Sequence[str],
+    rows: Iterable[Mapping[str, object]],
+    *,
+    as_they_are: bool = False,
+) -> Html:
+    """Rows by column; a number has six digits, and what is undefined a dash.
+
+    Headings are the columns' names, `as_they_are` or with spaces.
+    """
+    headings = columns if as_they_are else [name.replace("_", " ") for name in columns]
+    head = join("", (html("<th>{}</th>", heading) for heading in headings))
     body = (
         html("<tr>{}</tr>\n", join("", (html("<td>{}</td>", cell(row[at])) for at in columns)))
         for row in rows

@@ -10,7 +10,7 @@ from typing import Any, Literal, Unpack
 import numpy as np
 
 from sepcal import _core
-from sepcal.arguments import Missing, Misuse, checked
+from sepcal.arguments import Missing, Misuse, checked, shown
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight
@@ -80,8 +80,8 @@ class Track(_core.Track):
         return as_figure(picture_track(self, what), backend, theme)
 
     def _place(self, name: str) -> int:
-        if name not in self.names:
-            raise Missing(f"there is no {name!r}; there are: {', '.join(self.names)}")
+        if not isinstance(name, str) or name not in self.names:
+            raise Missing(f"there is no {shown(name)}; there are: {', '.join(self.names)}")
         return self.names.index(name)
 
     def _repr_html_(self) -> str:

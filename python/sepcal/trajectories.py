@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack, get_type_hints
 
 from sepcal import _core
-from sepcal.arguments import Misuse, checked
+from sepcal.arguments import Misuse, checked, fits, shown, words
 from sepcal.geometry import Aircraft
 from sepcal.models import Model, Vector, _to_vector
 from sepcal.states_module import states_module
@@ -53,6 +53,9 @@ class TrajectoryOptions(TypedDict, total=False):
     scales_about_start: bool
 
 
+KINDS = get_type_hints(TrajectoryOptions)
+
+
 class TrajectoryModel(Model):
     """A model with a state along a record; use FlightPath, ShortPeriod, or Trajectory for your own.
 
@@ -81,6 +84,10 @@ def complete(options: TrajectoryOptions) -> dict[str, Any]:
         if name not in STATE_OPTIONS:
             known = ", ".join(STATE_OPTIONS)
             raise Misuse(f"a trajectory has no option '{name}'; it has: {known}")
+        is_one_name = name in ("measured", "outputs") and isinstance(options[name], str)  # type: ignore[literal-required]
+        if not is_one_name and not fits(options[name], KINDS[name]):  # type: ignore[literal-required]
+            value = shown(options[name])  # type: ignore[literal-required]
+            raise Misuse(f"{name} is {value}; give {words(KINDS[name])}")
     whole: dict[str, Any] = {**STATE_OPTIONS, **options}
     for name in ("measured", "outputs"):
         if isinstance(whole[name], str):

@@ -142,3 +142,43 @@ def test_what_a_function_of_the_caller_raises_is_left_as_it_is(subject: Subject)
     effect = sepcal.Effect("mine", lambda log: log["no such column"], port="wind")
     with pytest.raises(KeyError):
         subject.base.add(effect)
+
+
+def test_an_aircrafts_effects_are_listed_elsewhere() -> None:
+    for model in ("aircraft", sepcal.FlightPath()):
+        with pytest.raises(sepcal.Error, match="sepcal-aircraft effects"):
+            sepcal.effects(model)
+
+
+BRACKETS: list[Call] = [
+    lambda s, v: s.path.track(start_rows=200)[v],
+    lambda s, v: s.path.smooth({"ax": 0.1})[v],
+    lambda s, v: sepcal.monte_carlo(lambda rng: {"a": rng.normal()}, 2, progress=False)[v],
+    lambda s, v: s.base.intervals(names=["s_va"])[v],
+    lambda s, v: s.base.diagnose(simulations=2)[v],
+]
+
+
+@pytest.mark.parametrize("call", BRACKETS)
+def test_what_is_no_name_is_refused_in_brackets(call: Call, subject: Subject) -> None:
+    for value in (None, 3, np.zeros((2, 2)), "no such name"):
+        with pytest.raises(sepcal.Error):
+            call(subject, value)
+
+
+@pytest.mark.parametrize(
+    ("named", "options"),
+    [
+        ("inputs", {"inputs": None}),
+        ("substeps", {"substeps": "x"}),
+        ("shoot", {"shoot": "x"}),
+        ("measured", {"measured": None}),
+        ("outputs", {"outputs": "airspeed"}),
+        ("gravity", {"gravity": "x"}),
+        ("vane", {"vane": 3}),
+        ("nope", {"nope": 1}),
+    ],
+)
+def test_a_trajectory_names_the_option(named: str, options: dict[str, Any]) -> None:
+    with pytest.raises(sepcal.Error, match=named):
+        sepcal.FlightPath(**options)

@@ -14,7 +14,7 @@ from functools import lru_cache
 from typing import Any
 
 from sepcal import _core
-from sepcal.arguments import checked
+from sepcal.arguments import checked, shown
 
 Date = datetime.date | datetime.datetime | str | float
 NANOTESLA = 1e-3  # [uT]
@@ -102,6 +102,8 @@ def decimal_year(date: Date) -> float:
         if not math.isfinite(date):
             raise _core.Error(f"{date} is no year")
         return float(date)
+    if not isinstance(date, datetime.date):
+        raise _core.Error(f"{shown(date)} is no date; give a date, 2025.5 or '2025-07-02'")
     if not isinstance(date, datetime.datetime):
         date = datetime.datetime(date.year, date.month, date.day)
     first = datetime.datetime(date.year, 1, 1, tzinfo=date.tzinfo)
