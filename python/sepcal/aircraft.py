@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Protocol, Unpack
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.geometry import Aircraft
 from sepcal.states_module import states_module
 from sepcal.trajectories import TrajectoryOptions, complete, to_core_options
@@ -21,6 +22,7 @@ class AircraftModel(Protocol):
         """Of sepcal._states.Options, all but those of the fit."""
 
 
+@checked
 class Aero:
     """Aerodynamic coefficients by equation error: computed row by row, one linear least squares.
 
@@ -34,6 +36,15 @@ class Aero:
         equations: {coefficient: [regressors]} in their place: {"Cm": ["1", "alpha", "q_hat",
             "elevator", "alpha^2"]}.
         window: Of the local cubic that differentiates p, q and r [s]; 0: seven rows.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> flight = sepcal.simulate(aircraft, rows=400)
+        >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CY"), flight)
+        >>> abs(fit["CY_beta"].value / flight.truth["CY_beta"] - 1) < 0.1
+        True
     """
 
     def __init__(
@@ -66,6 +77,7 @@ class Aero:
         return f"Aero({self.aircraft!r}, equations={self.equations!r}, window={self.window!r})"
 
 
+@checked
 class RigidAircraft:
     """An aircraft by output error: integrated from its initial states, it gives the readings.
 
@@ -78,6 +90,15 @@ class RigidAircraft:
         gravity: At the place of the flight [m/s^2].
         window: Of the local cubic that differentiates rates for the start [s]; 0: seven rows.
         **options: TrajectoryOptions; `measured` and `outputs` are the axes' own where left out.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> flight = sepcal.simulate(aircraft, rows=400)
+        >>> fit = sepcal.fit(sepcal.RigidAircraft(aircraft, "longitudinal"), flight)
+        >>> abs(fit["Cm_q"].value / flight.truth["Cm_q"] - 1) < 0.1
+        True
     """
 
     def __init__(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, overload
 
 from sepcal import _core
 from sepcal.aircraft import Aero, AircraftModel
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
@@ -18,7 +19,7 @@ from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.geometry import Aircraft
 from sepcal.intervals import Intervals
 from sepcal.options import spelled_out, to_core, to_names
-from sepcal.own_effect import name_effects
+from sepcal.own_effect import given_effects, name_effects
 from sepcal.pages import Page
 from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
@@ -45,10 +46,17 @@ class AddedRegressor(NamedTuple):
     drop: float  # the same as it fell; predicted is NaN of equation error
 
 
+@checked
 class AircraftFit(Fit):
     """A Fit of a flight path or an aircraft, with all that later verbs need.
 
     It pickles as its JSON, without the flight.
+
+    Example:
+        >>> flight = sepcal.datasets.load("aircraft")
+        >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+        >>> abs(path["b_ax"].value - flight.truth["b_ax"]) < 3 * path["b_ax"].standard_error
+        True
     """
 
     core: _states.Fit
@@ -105,6 +113,12 @@ class AircraftFit(Fit):
 
         Raises:
             Error: Bad input, as in fit(); no flight given where the fit was loaded.
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+            >>> round(path.compare().overall[0].rmse, 1)  # of the airspeed
+            0.2
         """
         return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core), self.noise)
 
@@ -180,6 +194,15 @@ class AircraftFit(Fit):
         Raises:
             Error: Bad input, as in fit(); an effect to inject that the fit has, or beside auto;
                 most below 1 or without auto; a name in only that is no regressor.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> fit.diagnose(only=["CX[alpha*q_hat]"], simulations=10).verdict  # nothing is missing
+            'adequate'
         """
         chosen = self._or_fitted(flight, "diagnose(")
         injected = to_injected(inject, auto=auto)
@@ -215,9 +238,22 @@ class AircraftFit(Fit):
         Raises:
             Error: Another flight; a fit by filter error; a parameter that there isn't or that is
                 fixed; a level outside (0, 1).
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> fit.intervals(names=["CX_alpha"])
+            <sepcal.Intervals of 95 %: 1 parameters>
         """
         chosen = self._or_fitted(flight, "intervals(")
-        return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
+        return Intervals(
+            self.core.intervals(
+                chosen._core, level, to_names("names", () if names is None else names)
+            )
+        )
 
     def add(
         self, effect: str, flight: AnyFlight | Sequence[AnyFlight] | None = None
@@ -229,6 +265,15 @@ class AircraftFit(Fit):
         Raises:
             Error: Bad input, as in fit(); an effect that the model doesn't know, listing those
                 that it does.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> fit.add("CX[alpha*q_hat]").history[0].effect
+            'CX[alpha*q_hat]'
         """
         chosen = self._or_fitted(flight, "add(..., ")
         return AircraftFit(self.core.add(chosen._core, effect), chosen)
@@ -246,6 +291,12 @@ class AircraftFit(Fit):
         Args:
             flight: By default the fitted one.
             process_noise: As of smooth().
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+            >>> [name for name in path.apply() if name.endswith("_cal_rad")]
+            ['beta_cal_rad', 'alpha_cal_rad', 'roll_cal_rad', 'pitch_cal_rad', 'yaw_cal_rad']
         """
         chosen = self._or_fitted(flight, "apply(")
         columns, _ = self.core.apply(chosen._core, dict(process_noise or {}))
@@ -271,6 +322,12 @@ class AircraftFit(Fit):
 
         Raises:
             Error: No process noise, another name; equation error, which has no state.
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+            >>> path.smooth({"ax": 0.05, "az": 0.05}).states
+            ('u', 'v', 'w', 'phi', 'theta', 'psi')
         """
         chosen = self._or_fitted(flight, "smooth({...}, ")
         return Smoothed(
@@ -310,6 +367,14 @@ class AircraftFit(Fit):
         Raises:
             Error: The fit's own flight without start_rows, whose rows must not count twice; rows
                 that are too few; names that the model doesn't have.
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+            >>> track = path.track(start_rows=200)
+            >>> off = track["b_ax"][-1] - flight.truth["b_ax"]
+            >>> bool(abs(off) < 3 * track.standard_deviation("b_ax")[-1])
+            True
         """
         chosen = self._or_fitted(flight, "track(")
         core, _ = self.core.track(
@@ -352,6 +417,12 @@ class AircraftFit(Fit):
         Raises:
             Error: Another word for one of these; bad input, as in compare(); no process noise where
                 it is needed; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+            >>> figure = path.plot()
+            >>> states = path.plot("states", process_noise={"ax": 0.05}, backend="matplotlib")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_aircraft, picture_fit
@@ -363,6 +434,21 @@ class AircraftFit(Fit):
         chosen = self._or_fitted(flight, "plot(flight=")
         given = process_noise or {}
         return as_figure(picture_aircraft(self, what, chosen, given), backend, theme)
+
+    def report(self, file: Path, flight: AnyFlight | None = None, **options: Any) -> None:  # noqa: ANN401
+        """Writes its report to one HTML page, as sepcal.report(), which takes several as well.
+
+        Args:
+            file: To write.
+            flight: To report on [the one that was fitted].
+            **options: Those of sepcal.report(): files, process_noise, progress.
+
+        Raises:
+            Error: As sepcal.report().
+        """
+        from sepcal.reporting import report
+
+        report(self, file, flight, **options)
 
     @property
     def _units(self) -> dict[str, str]:
@@ -398,6 +484,7 @@ class AircraftFit(Fit):
         return _parse, (self.to_json(),)
 
 
+@checked
 class TwoSteps(Page):
     """A flight path, then the aerodynamics of what was flown.
 
@@ -477,6 +564,7 @@ def fit_flights(
 
 
 @spelled_out()
+@checked
 def two_step(
     flight: AnyFlight,
     aircraft: Aircraft,
@@ -501,6 +589,15 @@ def two_step(
 
     Raises:
         Error: Bad input: one line that names the culprit and the way out.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> flight = sepcal.simulate(aircraft, rows=400)
+        >>> steps = sepcal.two_step(flight, aircraft, equations={"CZ": ["1", "alpha"]})
+        >>> abs(steps.aero["CZ_alpha"].value / flight.truth["CZ_alpha"] - 1) < 0.1
+        True
     """
     chosen = to_flight(flight, "two_step(")
     aero = Aero(aircraft, equations=equations, window=window)
@@ -516,7 +613,7 @@ def _core_options(model: AircraftModel, options: FitOptions) -> _states.Options:
 
 
 def _with_fit(laid: dict[str, Any], options: FitOptions) -> _states.Options:
-    names = name_effects(options.get("effects") or ())
+    names = name_effects(given_effects(options))
     core: _states.Options = states_module().Options(
         **laid, fit=to_core({**options, "effects": names})
     )

@@ -6,12 +6,13 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, TypeGuard, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeGuard, overload
 
 import numpy as np
 
 from sepcal import _core
 from sepcal.aircraft_fits import AircraftFit, read_fit
+from sepcal.arguments import Missing, checked
 from sepcal.certificates import Certificate
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
@@ -27,13 +28,25 @@ from sepcal.results import Fit
 from sepcal.stepwise import Stepwise, diagnosis_options, to_injected
 from sepcal.whole_files import name_of
 
+if TYPE_CHECKING:
+    from sepcal.exporting import Exported
+
 Path = str | os.PathLike[str]
 
 
+@checked
 class Calibration(Fit):
     """A Fit of a probe, with all that later verbs need: probe, options, and the flight fitted.
 
     It pickles as its JSON and its own effects, without the flight and stage one's samples.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> print(f"{base['w_e'].value:.1f} +- {base['w_e'].standard_error:.1f} {base['w_e'].unit}")
+        2.5 +- 0.2 m/s
+        >>> base.names
+        ('s_va', 'c_va', 'w_n', 'w_e', 'w_d')
     """
 
     core: _core.Calibration
@@ -71,8 +84,8 @@ class Calibration(Fit):
 
     def __getitem__(self, name: str) -> _core.Parameter:
         """The parameter. Raises KeyError listing the names."""
-        if name in self.derived:
-            raise KeyError(f"'{name}' follows from the parameters: derived['{name}']")
+        if isinstance(name, str) and name in self.derived:
+            raise Missing(f"'{name}' follows from the parameters: derived['{name}']")
         return super().__getitem__(name)
 
     @property
@@ -91,7 +104,18 @@ class Calibration(Fit):
         return {one.flight: one for one in self.core.departures}
 
     def departed(self, level: float = 0.01) -> list[str]:
-        """Labels of flights that depart from the others, by p below `level`; the surest first."""
+        """Labels of flights that depart from the others, by p below `level`; the surest first.
+
+        Example:
+            >>> def fly(seed):
+            ...     flown = sepcal.simulate("pitot-static", rows=200, seed=seed)
+            ...     return sepcal.Flight(flown, name=f"day {seed}")
+            ...
+            >>> flights = [fly(1), fly(2), fly(3)]
+            >>> both = sepcal.fit_jointly(sepcal.PitotStatic(), flights)
+            >>> both.departed()  # none: all fly one tube
+            []
+        """
         found = [label for label, one in self.departures.items() if one.p < level]
         return sorted(found, key=lambda label: self.departures[label].p)
 
@@ -119,6 +143,13 @@ class Calibration(Fit):
 
         Raises:
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> worst = max(base.compare().where, key=lambda misfit: misfit.rmse)
+            >>> worst.segment, worst.output, round(worst.rmse, 1)
+            ('wind_circle_1', 'airspeed', 0.6)
         """
         core, chosen = self._on(flight, "compare(", known=True)
         return Comparison(core.compare(chosen._core), self.noise)
@@ -195,6 +226,13 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, as in fit(); an effect to inject that the flight can't make, or beside
                 auto; most below 1 or without auto; one of only that the flight can't make.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> found = base.diagnose()
+            >>> found.verdict, found.advice.effect, flight.effects
+            ('effect_missing', 'wind[altitude_m]', ('wind[altitude_m]',))
         """
         chosen = self._or_fitted(flight, "diagnose(")
         injected = to_injected(inject, auto=auto)
@@ -229,6 +267,13 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, as in fit(); an effect that it has already; no flight given where the
                 calibration was loaded.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> step = base.add("wind[altitude_m]").history[0]
+            >>> round(step.rmse_before, 2), round(step.rmse_after, 2)
+            (0.46, 0.31)
         """
         chosen = self._or_fitted(flight, "add(..., ")
         name = effect.name if isinstance(effect, Effect) else effect
@@ -257,9 +302,20 @@ class Calibration(Fit):
         Raises:
             Error: Another flight, a parameter that there isn't or that is fixed, a level outside
                 (0, 1).
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> interval = base.intervals(names=["s_va"])["s_va"]
+            >>> interval.profile[0] < interval.value < interval.profile[1], interval.ends
+            (True, ('crossed', 'crossed'))
         """
         chosen = self._or_fitted(flight, "intervals(")
-        return Intervals(self.core.intervals(chosen._core, level, to_names("names", names or ())))
+        return Intervals(
+            self.core.intervals(
+                chosen._core, level, to_names("names", () if names is None else names)
+            )
+        )
 
     def certify(
         self, flight: AnyFlight | None = None, *, tolerance: float = 1e-6, boxes: int = 20000
@@ -284,9 +340,16 @@ class Calibration(Fit):
 
         Raises:
             Error: Bad input, as in fit(); no flight given where the calibration was loaded.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> low, high = base.predict(level=0.99).measurement_band  # of the airspeed [m/s]
+            >>> bool((high > low).all())
+            True
         """
         chosen = self._or_fitted(flight, "predict(")
-        return Prediction(self.core.predict(chosen._core, level), self.noise)
+        return Prediction(self.core.predict(chosen._core, level), list(self.noise))
 
     def plot(
         self,
@@ -313,6 +376,12 @@ class Calibration(Fit):
         Raises:
             Error: Another word for one of these; bad input, as in compare(); "steps" where nothing
                 was added; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> figure = base.plot()  # figure.show(), or the last line of a notebook's cell
+            >>> base.plot("noise", backend="matplotlib", theme="dark").savefig(folder / "noise.png")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_calibration, picture_fit, picture_steps
@@ -325,11 +394,60 @@ class Calibration(Fit):
         core, chosen = self._on(flight, "plot(flight=", known=True)
         return as_figure(picture_calibration(self, what, core, chosen), backend, theme)
 
+    def export(self, file: Path, to: str, **options: Any) -> Exported:  # noqa: ANN401
+        """Writes what a vehicle loads of it, as sepcal.export(), which says what the options are.
+
+        Args:
+            file: To write.
+            to: "c", "cpp", "px4" or "ardupilot".
+            **options: Those of sepcal.export().
+
+        Raises:
+            Error: As sepcal.export().
+
+        Example:
+            >>> flight = sepcal.datasets.load("magnetometer")
+            >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+            >>> written = base.export(folder / "compass.h", "c", single=True)
+        """
+        from sepcal.exporting import export
+
+        return export(self, file, to, **options)
+
+    def report(self, file: Path, flight: AnyFlight | None = None, **options: Any) -> None:  # noqa: ANN401
+        """Writes its report to one HTML page, as sepcal.report(), which takes several as well.
+
+        Args:
+            file: To write.
+            flight: To report on [the one that was fitted].
+            **options: Those of sepcal.report(): diagnosis, files, progress.
+
+        Raises:
+            Error: As sepcal.report().
+
+        Example:
+            >>> base = sepcal.fit(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+            >>> base.report(folder / "report.html")
+        """
+        from sepcal.reporting import report
+
+        report(self, file, flight, **options)
+
     def join(self, flights: Sequence[AnyFlight]) -> Flight:
         """The flights of a joint fit, in any order, as the one that it is of.
 
         Raises:
             Error: Other flights than those, or one that was changed; a fit of one flight.
+
+        Example:
+            >>> def fly(seed):
+            ...     flown = sepcal.simulate("pitot-static", rows=200, seed=seed)
+            ...     return sepcal.Flight(flown, name=f"day {seed}")
+            ...
+            >>> flights = [fly(1), fly(2), fly(3)]
+            >>> both = sepcal.fit_jointly(sepcal.PitotStatic(), flights)
+            >>> both.join(flights).rows
+            600
         """
         return Flight._of(
             self.core.rejoin([self._to_flight(one, "join([")._core for one in flights])
@@ -368,6 +486,12 @@ class Calibration(Fit):
 
         Raises:
             Error: Bad input, or a calibration that can't be inverted.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> sorted(base.apply(flight))
+            ['airspeed_cal_mps']
         """
         core, chosen = self._on(flight, "apply(", known=False)
         return core.apply(chosen._core)
@@ -378,11 +502,25 @@ class Calibration(Fit):
         Raises:
             Error: Bad input, columns of those names that are there already, an output that can't be
                 written.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> np.savetxt(folder / "log.csv", [[150.0, 1.19]], header="dp_pa,rho_kgpm3",
+            ...            delimiter=",", comments="")
+            >>> base.apply_to_file(folder / "log.csv", folder / "corrected.csv").rows
+            1
         """
         return self.core.apply_to_file(name_of(file), name_of(output))
 
     def save(self, file: Path) -> None:
-        """Writes to_json() to a file that appears whole or not at all; raises Error if it can't."""
+        """Writes to_json() to a file that appears whole or not at all; raises Error if it can't.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.save(folder / "base.json")  # for sepcal.load(), and for the apps
+        """
         self.core.save(name_of(file))
 
     def to_json(self) -> str:
@@ -404,6 +542,7 @@ def _are_several(
     return isinstance(flight, Sequence) and not isinstance(flight, str)
 
 
+@checked
 def load(
     file: Path,
     effects: Sequence[Effect] = (),
@@ -424,6 +563,13 @@ def load(
     Raises:
         Error: The file can't be read, is no calibration, or is of another schema version; an effect
             that it doesn't have; another model.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> base.save(folder / "base.json")
+        >>> sepcal.load(folder / "base.json")["w_n"].value == base["w_n"].value
+        True
     """
     if _is_of_aircraft(file):
         return read_fit(file)

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Unpack
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Columns, labels_in, take_columns
 from sepcal.fit_options import FitOptions
 from sepcal.intervals import as_fitted
@@ -35,6 +36,7 @@ class CostBound(_core.CostBound):
 
 
 @spelled_out()
+@checked
 def certify(
     model: AnyModel,
     data: Columns,
@@ -67,6 +69,7 @@ def certify(
     return Certificate(_core.certify(laid, columns, labels, core, own, fit, tolerance, boxes))
 
 
+@checked
 def bound_cost(
     model: AnyModel,
     data: Columns,

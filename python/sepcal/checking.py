@@ -9,6 +9,7 @@ from typing import Any
 
 from sepcal import _core
 from sepcal.aircraft import Aero, RigidAircraft
+from sepcal.arguments import checked
 from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
@@ -17,8 +18,15 @@ from sepcal.states_module import states_module
 from sepcal.trajectories import FlightPath
 
 
+@checked
 class FlightCheck(Page, _core.FlightCheck):
-    """A log, column by column, and notes. `print(check)` shows the page."""
+    """A log, column by column, and notes. `print(check)` shows the page.
+
+    Example:
+        >>> check = sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+        >>> [column.header for column in check.columns if not column.quantity]  # channels
+        ['altitude_m', 'throttle', 'current_a']
+    """
 
     _shown = ("concern", "found", "effect", "advice")
     flight: Flight | None = None  # None where it was pickled
@@ -71,6 +79,7 @@ class FlightCheck(Page, _core.FlightCheck):
         return [note._asdict() for note in self.notes]
 
 
+@checked
 def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCheck:
     """What a log is, column by column, and what that does to a calibration from it.
 
@@ -86,6 +95,12 @@ def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCh
 
     Raises:
         Error: A model that takes no flight.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> check = sepcal.check(sepcal.PitotStatic(), flight)
+        >>> check.refused, [note.kind for note in check.notes], round(check.rate)
+        ('', [], 4)
     """
     if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")

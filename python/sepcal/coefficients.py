@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from sepcal.arguments import checked
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.geometry import Aircraft
 from sepcal.matrices import to_number
@@ -32,6 +33,7 @@ class AeroCoefficients:
     notes: list[str]
 
 
+@checked
 def aero_coefficients(
     data: Columns,
     aircraft: Aircraft,

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sepcal import _core
+from sepcal.arguments import shown
 from sepcal.printing import as_utf8
 
 Array: TypeAlias = NDArray[np.float64]
@@ -37,6 +38,8 @@ def by_name(data: Columns) -> Columns:
     if isinstance(data, str | os.PathLike):
         raise _core.Error(f"'{os.fspath(data)}' is the name of a file; give sepcal.read(file)")
     if not isinstance(data, np.ndarray):
+        if not hasattr(data, "__getitem__") or isinstance(data, list | tuple | bytes):
+            raise _core.Error(f"{shown(data)} has no columns; give them by name, as a dict")
         return data
     if data.dtype.names is None:
         raise _core.Error(
@@ -100,6 +103,8 @@ def take_drivers(
 
 def to_labels(labels: Iterable[object]) -> list[str]:
     """One text a row. Raises Error for one that no UTF-8 is of."""
+    if isinstance(labels, str) or not isinstance(labels, Iterable):
+        raise _core.Error(f"maneuver is {shown(labels)}; give a label a row")
     texts = [str(label) for label in labels]
     for text in set(texts):
         as_utf8("the label", text)

@@ -10,12 +10,22 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
 
 
+@checked
 class Comparison(Page, _core.Comparison):
-    """A calibration against a flight. `print(comparison)` shows the table."""
+    """A calibration against a flight. `print(comparison)` shows the table.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> comparison = base.compare()
+        >>> [(misfit.output, round(misfit.rmse, 2), misfit.unit) for misfit in comparison.overall]
+        [('airspeed', 0.46, 'm/s')]
+    """
 
     _shown = ("segment", "output", "rows", "rmse", "mean", "lag_one", "unit")
     noise: Mapping[str, float] = MappingProxyType({})  # of the fit, by output; pickled it is lost

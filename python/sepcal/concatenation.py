@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.models import Model
 from sepcal.own_model import SeparableModel
 from sepcal.own_state_model import as_model
@@ -30,6 +31,7 @@ class Concatenation(Model):
         return f"concatenate({', '.join(parts)})"
 
 
+@checked
 def concatenate(
     *sensors: Model | SeparableModel, **labelled: Model | SeparableModel
 ) -> Concatenation:
@@ -46,6 +48,11 @@ def concatenate(
 
     Raises:
         Error: No model, one with a state, a name that belongs to two, an input in two units.
+
+    Example:
+        >>> both = sepcal.concatenate(mag=sepcal.Magnetometer(), acc=sepcal.Accelerometer())
+        >>> both.outputs
+        ('mag.mx', 'mag.my', 'mag.mz', 'acc.ax', 'acc.ay', 'acc.az')
     """
     parts = [*(("", sensor) for sensor in sensors), *labelled.items()]
     return Concatenation([(label, as_model(sensor)) for label, sensor in parts])

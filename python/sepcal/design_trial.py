@@ -10,17 +10,19 @@ import numpy as np
 from numpy.random import Generator
 
 from sepcal._core import Error
+from sepcal.arguments import checked
 from sepcal.columns import Array, Columns, by_name
 from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
 from sepcal.options import to_core
-from sepcal.own_effect import name_effects
+from sepcal.own_effect import given_effects, name_effects
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.results import Fit
 from sepcal.trial_fits import fit_trials
 from sepcal.trials import Estimates, in_order
 
 
+@checked
 class DesignTrial:
     """Measures a model at its truth, with normal noise, and fits it, for sepcal.monte_carlo().
 
@@ -78,7 +80,7 @@ class DesignTrial:
             known = ", ".join(noises) or "none"
             raise Error(f"there is no process noise {', '.join(unknown)}; the model has: {known}")
         self.options: FitOptions = {**options, "threads": options.get("threads") or 1}
-        to_core({**self.options, "effects": name_effects(self.options.get("effects") or ())})
+        to_core({**self.options, "effects": name_effects(given_effects(self.options))})
         self.exact = self._measure()
 
     def draw(self, rng: Generator) -> dict[str, Array]:

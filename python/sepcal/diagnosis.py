@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from sepcal import _core
 from sepcal._core import EffectFinding
+from sepcal.arguments import checked
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
 
@@ -30,8 +31,17 @@ COLUMNS = (  # of the table, one number a candidate
 STANDS_OUT = ("found", "slow_change", "undecided")
 
 
+@checked
 class Diagnosis(Page, _core.Diagnosis):
-    """A verdict and the ranked candidates. `print(diagnosis)` shows the table."""
+    """A verdict and the ranked candidates. `print(diagnosis)` shows the table.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> found = base.diagnose()
+        >>> found["wind[altitude_m]"].status, found.verdict
+        ('found', 'effect_missing')
+    """
 
     _shown = (
         *("name", "status", "p_adjusted", "predicted_drop", "held_out_gain", "visibility"),
@@ -56,7 +66,7 @@ class Diagnosis(Page, _core.Diagnosis):
     def __getitem__(self, name: str) -> EffectFinding:
         """The candidate of that name. Raises Error where it was not tried."""
         for effect in self.effects:
-            if effect.name == name:
+            if isinstance(name, str) and effect.name == name:
                 return effect
         raise _core.Error(f"there is no candidate '{name}' in this diagnosis")
 

@@ -23,6 +23,7 @@ from queue import SimpleQueue
 from typing import Generic, TypeAlias, TypeVar
 
 from sepcal._core import Error
+from sepcal.arguments import shown
 from sepcal.dask_executor import with_sure_futures
 from sepcal.remote_call import Answer, call_all, call_pickled, raise_again
 
@@ -156,6 +157,8 @@ class _Pool:
         self._make = None if isinstance(executor, Executor) else executor
         self._breaks = 0
         made = executor if isinstance(executor, Executor) else executor()
+        if not hasattr(made, "submit"):
+            raise Error(f"executor gives {shown(made)}; give a function that makes an executor")
         self.executor = with_sure_futures(made)
 
     def is_well(self) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.calibration import Calibration, Path
 from sepcal.flight import AnyFlight, to_flight
 from sepcal.whole_files import name_of
@@ -16,7 +17,15 @@ Target = Literal["c", "cpp", "px4", "ardupilot"]
 
 
 class Exported(_core.Exported):
-    """What was written, and what the vehicle's correction lacks; print() shows the page."""
+    """What was written, and what the vehicle's correction lacks; print() shows the page.
+
+    Example:
+        >>> flight = sepcal.datasets.load("magnetometer")
+        >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+        >>> written = sepcal.export(base, folder / "compass.h", to="c")
+        >>> written.to_dict()["to"]
+        'c'
+    """
 
     def __str__(self) -> str:
         return self.page
@@ -31,6 +40,7 @@ class Exported(_core.Exported):
         return read
 
 
+@checked
 def export(
     calibration: Calibration,
     file: Path,
@@ -79,6 +89,12 @@ def export(
     Raises:
         Error: A calibration that no vehicle should load, an effect that the vehicle can't follow, a
             value beyond what the autopilot takes, a flight that is needed and not there.
+
+    Example:
+        >>> flight = sepcal.datasets.load("magnetometer")
+        >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+        >>> sepcal.export(base, folder / "compass.h", to="c").notes
+        []
     """
     chosen = calibration.flight
     if flight is not None:

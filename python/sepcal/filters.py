@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal._core import Innovation
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.matrices import (
     UNCHANGED,
@@ -43,6 +44,15 @@ class SmoothedPass:
         covariance: Of x, (N, n_x, n_x).
         noise: Of the steps between samples, (N - 1, n_w): where it is large the model fails.
         noise_covariance: (N - 1, n_w, n_w).
+
+    Example:
+        >>> level = sepcal.Filter(x=[0.0], P=[[100.0]], keep_pass=True)
+        >>> for reading in (1.0, 1.0, 1.0):
+        ...     _ = level.update([reading], H=[[1.0]], R=[[0.01]])
+        ...     level.predict(Phi=[[1.0]], Q=[[0.0]])
+        ...
+        >>> level.smooth().x.round(2).ravel().tolist()
+        [1.0, 1.0, 1.0, 1.0]
     """
 
     x: Array
@@ -69,6 +79,7 @@ class SmoothedPass:
         return as_figure(picture_pass(self), backend, theme)
 
 
+@checked
 class Filter:
     """A Kalman filter; with linearisations of a nonlinear system the extended one.
 
@@ -90,6 +101,14 @@ class Filter:
 
     Attributes:
         log_likelihood: Of all outputs so far, the sum of ln p(e), S 5.4.
+
+    Example:
+        >>> level = sepcal.Filter(x=[0.0], P=[[100.0]])
+        >>> for reading in (1.1, 0.9, 1.0):
+        ...     _ = level.update([reading], H=[[1.0]], R=[[0.01]])
+        ...
+        >>> level.x.round(2).tolist()
+        [1.0]
     """
 
     def __init__(

@@ -7,13 +7,14 @@ from typing import Unpack, overload
 from sepcal import _core
 from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.aircraft_fits import AircraftFit, fit_flight
+from sepcal.arguments import checked
 from sepcal.calibration import Calibration
 from sepcal.columns import by_name, labels_in, take_columns, take_drivers
 from sepcal.fit_options import FitOptions
 from sepcal.flight import AnyFlight, Flight, to_columns, to_flight
 from sepcal.models import Model
 from sepcal.options import refuse_log_choice, spelled_out, to_core
-from sepcal.own_effect import Effect, name_effects, to_core_effects
+from sepcal.own_effect import Effect, given_effects, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model, own_among
 from sepcal.results import Fit
 from sepcal.trajectories import FlightPath
@@ -38,6 +39,7 @@ def fit(model: AnyModel, data: AnyFlight, **options: Unpack[FitOptions]) -> Fit:
 
 
 @spelled_out()
+@checked
 def fit(
     model: AnyModel | Aero | RigidAircraft, data: AnyFlight, **options: Unpack[FitOptions]
 ) -> Fit:
@@ -66,6 +68,12 @@ def fit(
         Error: Bad input or misuse: one line that names the culprit and the way out.
         TypeError: An option that there isn't, or of the wrong kind.
         Exception: What at() of a model in Python raises, as it is.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight, fix={"w_d": 0.0})
+        >>> base.status, round(base["w_e"].value, 1), flight.truth["w_e"]
+        ('converged', 2.5, 2.4)
     """
     if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the data: sepcal.fit(model, flight)")
@@ -80,7 +88,7 @@ def fit(
         data = to_flight(data, "fit(model, ", model, *form)
     if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
-    effects = options.get("effects") or ()
+    effects = given_effects(options)
     options["effects"] = names = name_effects(effects)
     core_options, own = to_core(options), to_core_effects(effects)
     if isinstance(data, Flight):

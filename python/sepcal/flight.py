@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Flight logs: the table of a CSV file, or arrays under the same headers."""
 
-import html
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -10,7 +9,10 @@ from typing import TYPE_CHECKING, Any, Protocol, Self, TypeAlias
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import Missing, checked
 from sepcal.columns import Array, Columns, by_name, to_column, to_labels
+from sepcal.markup import html as markup
+from sepcal.markup import join
 from sepcal.options import to_names
 from sepcal.plots import Backend, Theme
 from sepcal.printing import as_utf8, in_line
@@ -18,6 +20,7 @@ from sepcal.reading import AIR, MAGNETIC, read_file, reading_for
 from sepcal.reading.extras import load
 from sepcal.reading.frames import is_frame, of_frame
 from sepcal.reading.units import quantity_of
+from sepcal.tables import table_of
 from sepcal.whole_files import name_of, write_whole
 
 if TYPE_CHECKING:
@@ -48,6 +51,7 @@ class Dataset(Protocol):
         """Its variables."""
 
 
+@checked
 class Flight(Mapping[str, Array]):
     """A flight log: columns under headers with units, `<quantity>_<unit>`, as in a CSV file.
 
@@ -65,6 +69,11 @@ class Flight(Mapping[str, Array]):
     Raises:
         Error: A column of another length, without a name, not one-dimensional or not of numbers; a
             name or a label that no UTF-8 is of.
+
+    Example:
+        >>> flight = sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [150.0, 151.0]}, ["a", "b"])
+        >>> flight.columns, float(flight["dp_pa"].mean()), flight.maneuvers
+        (('time_s', 'dp_pa'), 150.5, ['a', 'b'])
     """
 
     def __init__(
@@ -149,6 +158,11 @@ class Flight(Mapping[str, Array]):
         Raises:
             Error: A column that there isn't; another word for one of these; the library is not
                 installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> drawn = flight.plot(["dp_pa", "altitude_m"], backend="matplotlib")
+            >>> drawn.savefig(folder / "flight.png")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_records import picture_flight
@@ -158,9 +172,9 @@ class Flight(Mapping[str, Array]):
 
     def __getitem__(self, header: str) -> Array:
         """The column, shape (rows,), read-only; NaN where a file's cell is no number."""
-        values = self._core.column(header)
+        values = self._core.column(header) if isinstance(header, str) else None
         if values is None:
-            raise KeyError(f"column '{header}' is missing; {self._core.list_columns()}")
+            raise Missing(f"column {header!r} is missing; {self._core.list_columns()}")
         return values
 
     def __iter__(self) -> Iterator[str]:
@@ -207,31 +221,21 @@ class Flight(Mapping[str, Array]):
 
     def _repr_html_(self) -> str:
         """A notebook's view: the first rows, and what the reader decided."""
-        rows = self.rows
-        shown = min(rows, ROWS_SHOWN)
-        labels = {"maneuver": self.maneuvers[:shown]} if self.maneuvers else {}
+        shown = min(self.rows, ROWS_SHOWN)
         columns: dict[str, Sequence[object]] = {
-            header: [f"{value:.6g}" for value in self[header][:shown]] for header in self
+            header: self[header][:shown].tolist() for header in self
         }
-        columns |= labels
-        head = "".join(f"<th>{_escaped(header)}</th>" for header in columns)
-        body = "".join(
-            "<tr>" + "".join(f"<td>{_escaped(cell)}</td>" for cell in cells) + "</tr>"
-            for cells in zip(*columns.values(), strict=True)
+        if self.maneuvers:
+            columns["maneuver"] = self.maneuvers[:shown]
+        rows = (
+            dict(zip(columns, cells, strict=True)) for cells in zip(*columns.values(), strict=True)
         )
-        notes = "".join(f"<li>{_escaped(note)}</li>" for note in self.notes)
-        return (
-            f"<p>{_escaped(self.name)}: {rows} rows</p>"
-            f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-            + (f"<ul>{notes}</ul>" if notes else "")
-        )
+        notes = join("", (markup("<li>{}</li>", note) for note in self.notes))
+        table = table_of(f"{self.name}: {self.rows} rows", list(columns), rows, as_they_are=True)
+        return join("", [table, markup("<ul>{}</ul>", notes) if notes else ""])
 
 
 AnyFlight: TypeAlias = Flight | Columns | ArrowTable | Dataset | str | os.PathLike[str]
-
-
-def _escaped(text: object) -> str:
-    return html.escape(in_line(text))
 
 
 def csv_of(flight: Flight) -> str:
@@ -255,6 +259,7 @@ def _cell(text: str) -> str:
     return '"' + text.replace('"', '""') + '"'
 
 
+@checked
 def read(
     data: AnyFlight, table: str | None = None, *, delimiter: str = "", decimal: str = ""
 ) -> Flight:
@@ -276,6 +281,10 @@ def read(
     Raises:
         Error: No such file, damaged, of another form, larger unpacked than sepcal takes, without a
             table, with several that could be meant; a library that is not installed.
+
+    Example:
+        >>> sepcal.read({"time_s": [0.0, 0.1], "dp_pa": [150.0, 151.0]}).rows
+        2
     """
     if isinstance(data, str | os.PathLike):
         return Flight._of(read_file(name_of(data), table, delimiter, decimal))
@@ -285,6 +294,7 @@ def read(
     return data if isinstance(data, Flight) else Flight(data)
 
 
+@checked
 def read_csv(file: str | os.PathLike[str], delimiter: str = "", decimal: str = "") -> Flight:
     """Reads a whole text table, plain CSV or another form; `notes` say what was assumed.
 
@@ -300,10 +310,17 @@ def read_csv(file: str | os.PathLike[str], delimiter: str = "", decimal: str = "
     Raises:
         Error: No such file, binary, no rows, or one that can be read in two ways; the message names
             file and line.
+
+    Example:
+        >>> np.savetxt(folder / "log.csv", [[0.0, 150.2], [0.1, 151.0]], header="time_s,dp_pa",
+        ...            delimiter=",", comments="")
+        >>> sepcal.read_csv(folder / "log.csv").columns
+        ('time_s', 'dp_pa')
     """
     return Flight._of(_core.read_csv(name_of(file), delimiter, decimal))
 
 
+@checked
 def stream_csv(
     file: str | os.PathLike[str],
     folder: str | os.PathLike[str] = "",
@@ -320,6 +337,12 @@ def stream_csv(
 
     Raises:
         Error: As read_csv(), and where the disc is full.
+
+    Example:
+        >>> np.savetxt(folder / "log.csv", [[0.0, 150.2], [0.1, 151.0]], header="time_s,dp_pa",
+        ...            delimiter=",", comments="")
+        >>> sepcal.stream_csv(folder / "log.csv", folder).rows
+        2
     """
     place = name_of(folder) if folder else ""
     return Flight._of(_core.stream_csv(name_of(file), place, delimiter, decimal))

@@ -8,11 +8,13 @@ import os
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from sepcal.arguments import checked
 from sepcal.models import Vector, _to_vector
 from sepcal.states_module import states_module
 from sepcal.whole_files import name_of
 
 
+@checked
 @dataclass(frozen=True, kw_only=True)
 class Aircraft:
     """What an aircraft is to its equations of motion.
@@ -31,6 +33,13 @@ class Aircraft:
         vane: Where airspeed, alpha and beta are read [m].
         rate_reference: What makes the pitch rate a number, q_hat: q c/V or q c/2V. CX_q, CZ_q and
             Cm_q of the first are half those of the second. Every result says which.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> aircraft.span
+        10.9
     """
 
     area: float
@@ -60,11 +69,20 @@ class Aircraft:
         return json.dumps(entries)
 
 
+@checked
 def read_aircraft(file: str | os.PathLike[str]) -> Aircraft:
     """Reads an aircraft as the app takes it with --geometry.
 
     Raises:
         Error: The file can't be read or is no aircraft: the entry that is wrong.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> _ = (folder / "aircraft.json").write_text(aircraft.to_json())
+        >>> sepcal.read_aircraft(folder / "aircraft.json") == aircraft
+        True
     """
     entries = json.loads(states_module().read_aircraft(name_of(file)))
     inertia = entries.get("inertia_kgm2")

@@ -8,18 +8,30 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Unpack
 
 from sepcal import _core
-from sepcal.columns import Array, Columns, labels_in, take_columns, take_drivers
+from sepcal.arguments import checked, found_by
+from sepcal.columns import Array, Columns, by_name, labels_in, take_columns, take_drivers
 from sepcal.fit_options import FitOptions
 from sepcal.options import spelled_out, to_core, to_names
-from sepcal.own_effect import CoreEffect, name_effects, to_core_effects
+from sepcal.own_effect import CoreEffect, given_effects, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 
 
+@checked
 class Intervals(Page, _core.Intervals):
-    """`print(intervals)` shows the table; `intervals["w_n"]` is one parameter's."""
+    """`print(intervals)` shows the table; `intervals["w_n"]` is one parameter's.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> intervals = base.intervals(level=0.9, names=["w_n", "w_e"])
+        >>> intervals
+        <sepcal.Intervals of 90 %: 2 parameters>
+        >>> intervals["w_n"].gaussian[0] < intervals["w_n"].value
+        True
+    """
 
     _shown = (
         "name",
@@ -30,6 +42,10 @@ class Intervals(Page, _core.Intervals):
         "profile_upper",
         "unit",
     )
+
+    def __getitem__(self, name: str) -> _core.ParameterInterval:
+        """One parameter's. Raises Error, a KeyError too, listing the names."""
+        return found_by(super().__getitem__, name)
 
     def to_json(self) -> str:
         """The JSON; of a calibration's, what the app's `intervals` prints."""
@@ -79,11 +95,19 @@ class Intervals(Page, _core.Intervals):
         ]
 
 
+@checked
 class Prediction(_core.Prediction):
     """What a fit says of N samples, in the outputs' units and the model's order of outputs.
 
     Attributes:
         outputs: Their names; pickled they are lost.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> prediction = base.predict()
+        >>> prediction.outputs, prediction.value.shape
+        (('airspeed',), (480, 1))
     """
 
     outputs: tuple[str, ...] = ()
@@ -124,6 +148,7 @@ class Prediction(_core.Prediction):
 
 
 @spelled_out()
+@checked
 def profile_intervals(
     model: AnyModel,
     data: Columns,
@@ -150,13 +175,28 @@ def profile_intervals(
     Raises:
         Error: The fit is not that of the model, the data and the options; a parameter that there
             isn't or that is fixed; a level outside (0, 1).
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> data = {"v": v, "z": 2.0 * v + np.sin(9.0 * v)}
+        >>> fit = sepcal.fit(Line(), data)
+        >>> low, high = sepcal.profile_intervals(Line(), data, fit)["k"].profile
+        >>> low < 2.0 < high
+        True
     """
     laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=True)
-    names = to_names("names", names or ())
+    names = to_names("names", () if names is None else names)
     return Intervals(_core.profile_intervals(laid, columns, labels, core, own, fit, level, names))
 
 
 @spelled_out()
+@checked
 def predict(
     model: AnyModel,
     data: Columns,
@@ -177,10 +217,22 @@ def predict(
 
     Raises:
         Error: Bad input, a fit of another model, a level outside (0, 1).
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> fit = sepcal.fit(Line(), {"v": v, "z": 2.0 * v + np.sin(9.0 * v)})
+        >>> float(sepcal.predict(Line(), {"v": [100.0]}, fit).value.round()[0, 0])
+        200.0
     """
     laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=False)
     predicted = _core.predict(laid, columns, labels, core, own, fit, level)
-    return Prediction(predicted, fit.noise)
+    return Prediction(predicted, list(fit.noise))
 
 
 def as_fitted(
@@ -197,9 +249,10 @@ def as_fitted(
     model = as_model(model)
     if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
-    own = to_core_effects(options.get("effects") or ())
-    options["effects"] = name_effects(options.get("effects") or ())
+    own = to_core_effects(given_effects(options))
+    options["effects"] = name_effects(given_effects(options))
     names = [setting.name for setting in fit.effects]
+    data = by_name(data)
     there = set(data)
     needed = [*model._columns_in(data), *({"time"} & there)]
     if measured:

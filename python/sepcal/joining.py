@@ -2,10 +2,12 @@
 """Two logs of one flight as one: sensors of different rates, with clocks of their own."""
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.flight import Flight, to_flight
 from sepcal.matrices import to_number
 
 
+@checked
 def join(flight: Flight, other: Flight, how: str = "linear", offset: float = 0.0) -> Flight:
     """Brings the columns of another log to the rows of the measured sensor's.
 

@@ -7,11 +7,12 @@ from typing import Unpack, overload
 from sepcal import _core
 from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.aircraft_fits import AircraftFit, fit_flights
+from sepcal.arguments import checked
 from sepcal.calibration import Calibration
 from sepcal.fit_options import FitOptions
 from sepcal.flight import AnyFlight, Flight, to_flight
 from sepcal.options import spelled_out, to_core, to_names
-from sepcal.own_effect import Effect, name_effects, to_core_effects
+from sepcal.own_effect import Effect, given_effects, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model, own_among
 from sepcal.trajectories import FlightPath
 
@@ -37,6 +38,7 @@ def fit_jointly(
 
 
 @spelled_out()
+@checked
 def fit_jointly(
     model: AnyModel | Aero | RigidAircraft,
     flights: Sequence[AnyFlight],
@@ -67,6 +69,16 @@ def fit_jointly(
         Error: Bad input, as in fit(); one flight, two of one name, an own parameter that there
             isn't.
         TypeError: An option that there isn't, or of the wrong kind.
+
+    Example:
+        >>> def fly(seed):
+        ...     flown = sepcal.simulate("pitot-static", rows=200, seed=seed)
+        ...     return sepcal.Flight(flown, name=f"day {seed}")
+        ...
+        >>> flights = [fly(1), fly(2), fly(3)]
+        >>> both = sepcal.fit_jointly(sepcal.PitotStatic(), flights)
+        >>> both.names, both.flights
+        (('s_va', 'c_va', 'w_n', 'w_e', 'w_d'), ['day 1', 'day 2', 'day 3'])
     """
     if isinstance(flights, Flight | str):
         raise _core.Error("flights is one flight; give several in a list, or fit() the one")
@@ -74,7 +86,7 @@ def fit_jointly(
         if own:
             raise _core.Error("own: the flights of an aircraft share all but their initial states")
         return fit_flights(model, flights, options)
-    effects = options.get("effects") or ()
+    effects = given_effects(options)
     options["effects"] = name_effects(effects)
     subject = as_model(model)
     if subject.runs_in_python:

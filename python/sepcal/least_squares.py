@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.matrices import (
     UNCHANGED,
@@ -61,6 +62,7 @@ class LeastSquares:
     cost: float
 
 
+@checked
 def iterate_least_squares(
     sample: Sample,
     count: int,
@@ -87,6 +89,16 @@ def iterate_least_squares(
     Raises:
         Error: Another shape, what is not finite, a W that is not positive definite.
         Exception: What `sample` raises, as it is.
+
+    Example:
+        >>> t = np.linspace(0.0, 2.0, 20)
+        >>> y = 3.0 * np.exp(-0.7 * t)
+        >>> def sample(k, p):
+        ...     decay = np.exp(-p[1] * t[k])
+        ...     return y[k] - p[0] * decay, [decay, -p[0] * t[k] * decay]
+        ...
+        >>> sepcal.iterate_least_squares(sample, 20, [1.0, 0.5]).p.round(6).tolist()
+        [3.0, 0.7]
     """
     last: tuple[int, Array, Array, Array] = (0, np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)))
 
@@ -122,6 +134,7 @@ def iterate_least_squares(
     return LeastSquares(status, taken, at, covariance, root, values, cost)
 
 
+@checked
 class RecursiveLeastSquares:
     """y = H p + e, sample by sample; the answer is that of all samples at once.
 
@@ -133,6 +146,14 @@ class RecursiveLeastSquares:
         covariance: Of those to begin with, (n, n).
         form: What is kept: the root of the information, the information itself (S 4.13), or its
             inverse (S 4.14, corrected).
+
+    Example:
+        >>> line = sepcal.RecursiveLeastSquares(2)
+        >>> for t in (0.0, 1.0, 2.0):
+        ...     line.absorb([[1.0, t]], [3.0 + 2.0 * t])
+        ...
+        >>> line.solution.round(6).tolist()
+        [3.0, 2.0]
     """
 
     def __init__(
@@ -144,7 +165,7 @@ class RecursiveLeastSquares:
         if isinstance(p, Integral):
             if p < 1:
                 raise _core.Error(f"p is {p}; give the number of parameters, or where they begin")
-            begin = np.zeros(int(p))
+            begin = np.zeros(to_whole_number("p", int(p)))
         else:
             begin = finite("p", to_vector("p", p))
             if covariance is None:

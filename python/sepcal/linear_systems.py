@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.differences import CENTRAL, Fan, step_sizes
 from sepcal.matrices import finite, to_covariance, to_matrix, to_number, to_vector
@@ -19,11 +20,16 @@ from sepcal.states_module import states_module
 MOST_STEPS = 1e6  # the compiled code's limit
 
 
+@checked
 def matrix_exponential(A: ArrayLike) -> Array:
     """exp(A), (n, n), by scaling, a Pade approximant and squaring (S 3.9).
 
     Raises:
         Error: A is not square, or not finite, or exp(A) is beyond the range of numbers.
+
+    Example:
+        >>> sepcal.matrix_exponential([[0.0, 0.1], [0.0, 0.0]]).tolist()
+        [[1.0, 0.1], [0.0, 1.0]]
     """
     exponential: Array = states_module().matrix_exponential(finite("A", to_matrix("A", A)))
     return _in_range("exp(A)", exponential)
@@ -44,6 +50,7 @@ class Transition:
     x: Array | None = None
 
 
+@checked
 def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
     """A step of x' = F x + w, exact (Van Loan 1978).
 
@@ -58,6 +65,11 @@ def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
     Raises:
         Error: Another shape, what is not finite, a density that is no covariance, a step back in
             time, or one so long that the result is beyond the range of numbers.
+
+    Example:
+        >>> step = sepcal.discretise([[0.0, 1.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], 0.1)
+        >>> step.Phi.tolist()
+        [[1.0, 0.1], [0.0, 1.0]]
     """
     Phi, Q = states_module().discretise(
         finite("F", to_matrix("F", F)), to_covariance("density", density), _duration("dt", dt)
@@ -80,6 +92,7 @@ class DiscreteInputs:
     end: Array
 
 
+@checked
 def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
     """What u adds to x' = F x + B u over a step of time. Held inputs lag linear ones by half of it.
 
@@ -90,6 +103,10 @@ def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
 
     Raises:
         Error: Another shape, or what is not finite.
+
+    Example:
+        >>> sepcal.discretise_inputs([[-1.0]], [[1.0]], 0.1).held.round(4).tolist()  # 1 - exp(-0.1)
+        [[0.0952]]
     """
     parts = states_module().discretise_inputs(
         finite("F", to_matrix("F", F)), finite("B", to_matrix("B", B)), _duration("dt", dt)
@@ -100,6 +117,7 @@ def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
 Rate = Callable[[Array, float], ArrayLike]
 
 
+@checked
 def propagate(
     rate: Rate,
     x: ArrayLike,
@@ -132,6 +150,11 @@ def propagate(
     Raises:
         Error: Another shape, or what is not finite, also of what the functions give.
         Exception: What the functions raise, as it is.
+
+    Example:
+        >>> step = sepcal.propagate(lambda x, t: -x, [1.0], [[0.0]], 0.0, 0.1)
+        >>> step.x.round(4).tolist(), step.Phi.round(4).tolist()  # exp(-0.1)
+        ([0.9048], [[0.9048]])
     """
     state = finite("x", to_vector("x", x))
     identity = np.eye(len(state))

@@ -11,6 +11,8 @@ from functools import partial
 from typing import Any, TypeAlias, Unpack
 
 from sepcal import _core
+from sepcal.arguments import checked, shown
+from sepcal.columns import by_name
 from sepcal.executors import describe, stream
 from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight
@@ -27,6 +29,7 @@ TASKS = 64  # that one pass over all flights is cut into, at most
 
 
 @spelled_out(without=("effects", "loss", "loss_width"))
+@checked
 def fit_many(
     model: AnyModel,
     flights: Mapping[str, Source] | Sequence[Source],
@@ -64,6 +67,17 @@ def fit_many(
         Error: Bad input or misuse: one line that names the flight, the culprit and the way out.
         TypeError: An option that there isn't, or of the wrong kind.
         Exception: What at() of a model in Python raises, as it is.
+
+    Example:
+        >>> days = {
+        ...     f"day {seed}": sepcal.simulate(
+        ...         "pitot-static", rows=200, seed=seed, parameters={"w_n": float(seed)}
+        ...     )
+        ...     for seed in (1, 2, 3)
+        ... }
+        >>> fleet = sepcal.fit_many(sepcal.PitotStatic(), days, own=["w_n"])
+        >>> [round(fleet.flights[day]["w_n"].value) for day in days]
+        [1, 2, 3]
     """
     sources = _name(flights)
     model = as_model(model)
@@ -146,17 +160,31 @@ def _name(flights: Mapping[str, Source] | Sequence[Source]) -> dict[str, Source]
     if isinstance(flights, Flight | str | os.PathLike):
         raise _core.Error("flights is one flight; give several, as a list or as {name: flight}")
     if isinstance(flights, Mapping):
-        return {str(name): source for name, source in flights.items()}
+        named = {str(name): source for name, source in flights.items()}
+        for name, source in named.items():
+            _refuse_no_flight(name, source)
+        return named
     if not isinstance(flights, Iterable):
         raise _core.Error(f"flights is a {type(flights).__name__}; give a list or {{name: flight}}")
-    named: dict[str, Source] = {}
+    listed: dict[str, Source] = {}
     for index, source in enumerate(flights):
         name = f"flight {index}"
+        _refuse_no_flight(name, source)
         if isinstance(source, str | os.PathLike):
             name = name_of(source)
         elif isinstance(source, Flight) and source.sha256:
             name = source.name
-        if name in named:
+        if name in listed:
             raise _core.Error(f"two flights are called '{name}'; give them as {{name: flight}}")
-        named[name] = source
-    return named
+        listed[name] = source
+    return listed
+
+
+def _refuse_no_flight(name: str, source: object) -> None:
+    if not isinstance(source, str | os.PathLike):
+        try:
+            by_name(source)  # type: ignore[arg-type]
+        except _core.Error:
+            raise _core.Error(
+                f"{name} is {shown(source)}; give a file's name, a Flight or columns by name"
+            ) from None

@@ -6,12 +6,28 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from sepcal import _core
+from sepcal.arguments import checked, found_by
 from sepcal.plots import Backend, Theme
 from sepcal.printing import page_of
+from sepcal.tables import table_of
 
 
+@checked
 class ManyFit(_core.ManyFit):
-    """A joint fit: `fit["lambda_va"]` is a shared parameter, `fit.flights["a.csv"]` a flight."""
+    """A joint fit: `fit["lambda_va"]` is a shared parameter, `fit.flights["a.csv"]` a flight.
+
+    Example:
+        >>> flights = [sepcal.simulate("pitot-static", rows=200, seed=seed) for seed in (1, 2)]
+        >>> fleet = sepcal.fit_many(sepcal.PitotStatic(), flights)
+        >>> fleet
+        <sepcal.ManyFit converged: 2 flights, 400 rows, 5 shared parameters>
+        >>> fleet.departed()
+        []
+    """
+
+    def __getitem__(self, name: str) -> _core.Parameter:
+        """A shared parameter. Raises Error, a KeyError too, listing the names."""
+        return found_by(super().__getitem__, name)
 
     @property
     def success(self) -> bool:
@@ -79,6 +95,12 @@ class ManyFit(_core.ManyFit):
         lines += [f"{name} is left out: {reason}" for name, reason in self.left_out.items()]
         lines.append(f"{self.status}: {self.message}" if self.message else self.status)
         return page_of(lines)
+
+    def _repr_html_(self) -> str:
+        """A small table of what all share, for notebooks."""
+        columns = ("name", "value", "standard_error", "unit")
+        rows = [parameter._asdict() for parameter in self.shared.values()]
+        return table_of(repr(self).strip("<>"), columns, rows)
 
     def __repr__(self) -> str:
         return (

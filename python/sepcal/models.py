@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array, Columns, labels_in, take_columns
 from sepcal.states_module import states_module
 
@@ -121,30 +122,46 @@ class Model:
 
 
 class ScalarExample1(Model):
-    """z = (1 + a) cos(eta + b) + c (Eqs. 21, 22); linear a, c, nonlinear b [rad]."""
+    """z = (1 + a) cos(eta + b) + c (Eqs. 21, 22); linear a, c, nonlinear b [rad].
+
+    Example:
+        >>> sepcal.ScalarExample1().nonlinear
+        ('b',)
+    """
 
     def __init__(self) -> None:
         super().__init__(_core.scalar_example_1())
 
 
 class ScalarExample2(Model):
-    """z = (1 + a) cos(eta (1 + b) + c) + d (Eq. 33); linear a, d, nonlinear b, c [rad]."""
+    """z = (1 + a) cos(eta (1 + b) + c) + d (Eq. 33); linear a, d, nonlinear b, c [rad].
+
+    Example:
+        >>> sepcal.ScalarExample2().nonlinear
+        ('b', 'c')
+    """
 
     def __init__(self) -> None:
         super().__init__(_core.scalar_example_2())
 
 
+@checked
 class Accelerometer(Model):
     """Three accelerometers against the true specific force in body axes (Eqs. A1 to A4).
 
     z = C_eta (I + D) f + n: scale errors lambda_x, lambda_y, lambda_z, biases n_x, n_y, n_z
     [m/s^2], small misalignments eta_x, eta_y, eta_z [rad]. triads.Triad puts others together.
+
+    Example:
+        >>> sepcal.Accelerometer().outputs
+        ('ax', 'ay', 'az')
     """
 
     def __init__(self) -> None:
         super().__init__(_core.accelerometer())
 
 
+@checked
 class DampedSinusoids(Model):
     """Damped sinusoids out of samples, what Prony's method looks for.
 
@@ -158,6 +175,10 @@ class DampedSinusoids(Model):
 
     Raises:
         Error: Another number of modes.
+
+    Example:
+        >>> sepcal.DampedSinusoids(1).nonlinear
+        ('frequency_1', 'damping_1')
     """
 
     def __init__(self, modes: int = 1) -> None:
@@ -168,6 +189,7 @@ class DampedSinusoids(Model):
         return {"modes": self.modes}
 
 
+@checked
 class FiveHoleProbe(Model):
     """A five-hole Pitot probe against the inertial velocity (Eqs. 36-42).
 
@@ -181,6 +203,11 @@ class FiveHoleProbe(Model):
 
     Raises:
         Error: A sensitivity is not positive.
+
+    Example:
+        >>> probe = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
+        >>> probe.outputs
+        ('vn', 've', 'vd')
     """
 
     name = "five-hole"
@@ -196,6 +223,7 @@ class FiveHoleProbe(Model):
         return {"k_alpha": self.k_alpha, "k_beta": self.k_beta, "lever_arm": self.lever_arm}
 
 
+@checked
 class VaneBoom(Model):
     """A boom with two vanes and a Pitot tube, against the velocity over the ground.
 
@@ -208,6 +236,10 @@ class VaneBoom(Model):
 
     Raises:
         Error: The lever arm has other than three numbers, or one is not finite.
+
+    Example:
+        >>> sepcal.VaneBoom().outputs
+        ('vn', 've', 'vd')
     """
 
     name = "vane-boom"
@@ -220,12 +252,17 @@ class VaneBoom(Model):
         return {"lever_arm": self.lever_arm}
 
 
+@checked
 class PitotStatic(Model):
     """A plain Pitot-static tube against the ground velocity: z = s_va |v_ground - W| + c_va.
 
     The wind W is nonlinear; its component w_d is held at zero unless fit(..., free=["w_d"]) frees
     it. A Calibration's `derived` has lambda_va and b_va, which correct the reading as in the
     five-hole probe. A flight logs airspeed_mps, or dp_pa and the density.
+
+    Example:
+        >>> sepcal.PitotStatic().linear
+        ('s_va', 'c_va')
     """
 
     name = "pitot-static"
@@ -234,6 +271,7 @@ class PitotStatic(Model):
         super().__init__(_core.pitot_static())
 
 
+@checked
 class Magnetometer(Model):
     """A three-axis magnetometer against a known field (Eqs. B1-B3), or against its strength.
 
@@ -250,6 +288,12 @@ class Magnetometer(Model):
 
     Raises:
         Error: Two of these contradict each other, or the strength is not positive.
+
+    Example:
+        >>> flight = sepcal.datasets.load("magnetometer")
+        >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+        >>> round(base["n_x"].value), flight.truth["n_x"]
+        (15, 12.0)
     """
 
     def __init__(

@@ -13,10 +13,12 @@ from typing import Any, Literal
 import numpy as np
 
 from sepcal._core import Error
+from sepcal.arguments import checked, shown
 from sepcal.columns import Array
 from sepcal.plots import Backend, Theme
 from sepcal.printing import aligned, page_of
 from sepcal.quantiles import binomial_limits, student_quantile
+from sepcal.tables import table_of
 from sepcal.trials import Estimates, TrialRecord, in_order, without_bulk
 
 MOST_FAILURES_SHOWN = 3
@@ -40,6 +42,7 @@ class ParameterStudy:
     coverage_limits: tuple[float, float]  # of that share, Clopper & Pearson, 95 %
 
 
+@checked
 class MonteCarlo:
     """A study. `print(study)` shows the table.
 
@@ -53,6 +56,12 @@ class MonteCarlo:
     Raises:
         Error: An index is there twice; the truth names what no trial estimates. Later: the trials
             gave no estimates, or of other parameters.
+
+    Example:
+        >>> study = sepcal.monte_carlo(lambda rng: {"mean": rng.normal(2.0, size=100).mean()}, 50,
+        ...                            truth={"mean": 2.0}, progress=False)
+        >>> study.summary()["mean"].trials, abs(study.summary()["mean"].bias) < 0.1
+        (50, True)
     """
 
     def __init__(
@@ -125,6 +134,8 @@ class MonteCarlo:
         Raises:
             Error: There is no such name, or its arrays have different shapes.
         """
+        if not isinstance(name, str):
+            raise Error(f"{shown(name)} is no name; give a text")
         if self.values and all(isinstance(value, Mapping) for value in self.values):
             columns = [value.get(name) for value in self.values]
             if all(column is not None for column in columns):
@@ -209,6 +220,15 @@ class MonteCarlo:
         if more := len(unsaid) - len(shown):
             lines.append(f"and {more} more failed; `failed` has the record of each")
         return page_of(lines)
+
+    def _repr_html_(self) -> str:
+        """A small table, for notebooks."""
+        columns = ("name", "truth", "bias", "rms_error", "standard_error", "coverage", "trials")
+        try:
+            rows = [vars(one) for one in self.summary().values()]
+        except Error:
+            rows = []
+        return table_of(_headline(self), columns, rows)
 
     def __repr__(self) -> str:
         return f"<sepcal.MonteCarlo {_headline(self)}>"

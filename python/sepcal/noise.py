@@ -8,12 +8,14 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal._core import NoiseFit, NoiseModel
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.matrices import to_vector, to_whole_number
 
 Segments = Sequence[tuple[int, int]]  # first row, row after the last
 
 
+@checked
 def fit_noise(
     e: ArrayLike,
     *,
@@ -39,6 +41,12 @@ def fit_noise(
     Raises:
         Error: No rows, a segment that leaves e, what is not finite, an order below 0 or above what
             the segments allow.
+
+    Example:
+        >>> white = np.random.default_rng(0).normal(0.0, 2.0, 2000)
+        >>> model = sepcal.fit_noise(white).model
+        >>> round(model.sigma), abs(model.d) < 0.05
+        (2, True)
     """
     wanted = None if order is None else to_whole_number("order", order)
     most = to_whole_number("max_order", max_order)
@@ -49,6 +57,7 @@ def fit_noise(
     return found
 
 
+@checked
 def whiten(model: NoiseModel, e: ArrayLike, *, segments: Segments | None = None) -> Array:
     """W e, white with unit variance where e is of the model, (N,); NaN outside the segments.
 
@@ -56,12 +65,19 @@ def whiten(model: NoiseModel, e: ArrayLike, *, segments: Segments | None = None)
 
     Raises:
         Error: A model that isn't stationary or whose sigma is 0, a segment that leaves e.
+
+    Example:
+        >>> slow = np.cumsum(np.random.default_rng(0).normal(0.0, 0.1, 2000))
+        >>> white = sepcal.whiten(sepcal.fit_noise(slow).model, slow)
+        >>> round(float(np.std(white)), 1)
+        1.0
     """
     if isinstance(model, NoiseFit):
         raise _core.Error("whiten() takes the fit's model; give found.model")
     return _core.whiten(model, to_vector("e", e), _rows(segments))
 
 
+@checked
 def simulate_noise(
     model: NoiseModel, rows: int | Sequence[int], *, draws: int = 1, seed: int = 0
 ) -> Array:
@@ -75,6 +91,12 @@ def simulate_noise(
 
     Raises:
         Error: A model that isn't stationary, an empty segment.
+
+    Example:
+        >>> model = sepcal.fit_noise(np.random.default_rng(0).normal(0.0, 2.0, 2000)).model
+        >>> drawn = sepcal.simulate_noise(model, 500, draws=3, seed=1)
+        >>> drawn.shape, round(float(drawn.std()))
+        ((500, 3), 2)
     """
     lengths = np.atleast_1d(np.asarray(rows, dtype=np.int64)).tolist()
     if min(lengths, default=0) < 1 or draws < 1:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, TypeAlias, TypeVar
 
 from sepcal import _core
+from sepcal.arguments import Misuse, shown
 from sepcal.fit_options import FitOptions
 
 ROWS = {row.name: row for row in _core.option_rows()}
@@ -69,16 +70,18 @@ def to_core(options: Mapping[str, Any]) -> _core.Options:
         if name not in FitOptions.__annotations__:
             known = ", ".join(FitOptions.__annotations__)
             hint = f"--{name} of the apps is {APP_NAMES[name]}; " if name in APP_NAMES else ""
-            raise TypeError(f"fit() has no option '{name}'; {hint}it has: {known}")
+            raise Misuse(f"fit() has no option '{name}'; {hint}it has: {known}")
         if value is None:
             continue
         try:
             setattr(core, name, dict(value) if isinstance(value, Mapping) else value)
-        except TypeError:
+        except _core.Error:
+            raise
+        except (TypeError, ValueError, OverflowError):
             shape = f"give {form}; " if (form := _shape(ROWS[name])) else ""
-            raise TypeError(
-                f"fit() can't take {name}={value!r}; {shape}help(sepcal.FitOptions) says what it "
-                "takes"
+            raise Misuse(
+                f"fit() can't take {name}={shown(value)}; {shape}help(sepcal.FitOptions) says what "
+                "it takes"
             ) from None
     return core
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Self, TypeAlias
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
+from sepcal.arguments import Misuse, checked, shown
 from sepcal.columns import NUMBERS, Array
 
 Function: TypeAlias = Callable[[Mapping[str, Array]], ArrayLike | Mapping[str, ArrayLike]]
@@ -23,6 +24,7 @@ CoreEffect: TypeAlias = tuple[
 ]
 
 
+@checked
 @dataclass(frozen=True)
 class Effect:
     """A physical effect that sepcal doesn't know; fit(..., effects=[effect]) adds it to a model.
@@ -48,6 +50,14 @@ class Effect:
     Raises:
         Error: A name that is none, or a function that can't be called; when it is used, a port that
             there isn't, a name that is taken, columns of another shape or not finite.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> gust = sepcal.Effect("gust", lambda log: np.sin(log["time"]), port="wind")
+        >>> added = base.add(gust)
+        >>> abs(added["gust.n"].value) < 3 * added["gust.n"].standard_error  # there is none
+        True
     """
 
     name: str
@@ -148,10 +158,17 @@ def to_core_effects(effects: Sequence[str | Effect]) -> list[CoreEffect]:
     ]
 
 
+def given_effects(options: Mapping[str, Any]) -> Sequence[str | Effect]:
+    """Those of a fit's options; none where none are given."""
+    effects = options.get("effects")
+    return () if effects is None else effects
+
+
 def name_effects(effects: Sequence[str | Effect]) -> list[str]:
-    """Their names. Raises TypeError for what has none."""
-    if isinstance(effects, str | Effect) or not all(isinstance(e, str | Effect) for e in effects):
-        raise TypeError(
-            f"fit() can't take effects={effects!r}; give a list of names and sepcal.Effect"
+    """Their names. Raises Error for what has none."""
+    is_list = isinstance(effects, Iterable) and not isinstance(effects, str | Mapping)
+    if not is_list or not all(isinstance(effect, str | Effect) for effect in effects):
+        raise Misuse(
+            f"fit() can't take effects={shown(effects)}; give a list of names and sepcal.Effect"
         )
     return [effect.name if isinstance(effect, Effect) else effect for effect in effects]

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from sepcal import _core
 from sepcal.answers import Layout
+from sepcal.arguments import checked
 from sepcal.columns import Array
 from sepcal.models import Model
 from sepcal.own_model import (
@@ -103,6 +104,7 @@ class StateModel(Protocol):
         """
 
 
+@checked
 class Trajectory(TrajectoryModel):
     """A StateModel laid along a record: how it is integrated, and what is measured.
 

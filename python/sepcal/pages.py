@@ -7,8 +7,9 @@ import importlib
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sepcal.markup import html, join
+from sepcal.arguments import NotInstalled
 from sepcal.printing import in_line
+from sepcal.tables import table_of
 
 Row = Mapping[str, object]
 
@@ -40,32 +41,13 @@ class Page:
 
     def _repr_html_(self) -> str:
         """A small table, for notebooks."""
-        head = join("", (html("<th>{}</th>", name.replace("_", " ")) for name in self._shown))
-        rows = [
-            html(
-                "<tr>{}</tr>\n",
-                join("", (html("<td>{}</td>", _cell(row[name])) for name in self._shown)),
-            )
-            for row in self._rows()
-        ]
-        return html(
-            "<table><caption>{}</caption>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table>",
-            self._summary(),
-            head,
-            join("", rows),
-        )
+        return table_of(self._summary(), self._shown, self._rows())
 
     def to_frame(self) -> Any:  # noqa: ANN401
-        """The same as a pandas.DataFrame, with every number. Raises ImportError without pandas."""
+        """The same as a pandas.DataFrame, with every number. Raises Error without pandas."""
         try:
             pandas = importlib.import_module("pandas")
         except ImportError:
-            raise ImportError("to_frame() needs pandas: pip install pandas") from None
+            raise NotInstalled("to_frame() needs pandas: pip install pandas") from None
         frame = pandas.DataFrame([dict(row) for row in self._rows()])
         return frame.set_index("name") if "name" in frame.columns else frame
-
-
-def _cell(value: object) -> str:
-    if value is None or value != value:
-        return "-"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -20,6 +20,8 @@ def in_line(text: object) -> str:
 
 def as_utf8(what: str, text: str) -> str:
     """The text, which C++ takes as it is. Raises Error for one that no UTF-8 is of."""
+    if not isinstance(text, str):
+        raise _core.Error(f"{what} is {in_line(repr(text))}; give a text")
     try:
         text.encode()
     except UnicodeEncodeError:

@@ -11,15 +11,36 @@ from typing import Any, Literal
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import checked, found_by
 from sepcal.columns import Array
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
 
 
+@checked
 class Fit(Page, _core.Fit):
-    """The two-stage batch estimate. `print(fit)` shows the table; `fit["w_n"]` is one parameter."""
+    """The two-stage batch estimate. `print(fit)` shows the table; `fit["w_n"]` is one parameter.
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> fit = sepcal.fit(Line(), {"v": v, "z": 2.0 * v})
+        >>> fit
+        <sepcal.Fit converged, 1 parameters, 50 rows>
+        >>> round(fit["k"].value, 6)
+        2.0
+    """
 
     _shown = ("name", "value", "standard_error", "unit")
+
+    def __getitem__(self, name: str) -> _core.Parameter:
+        """The parameter. Raises Error, a KeyError too, listing the names."""
+        return found_by(super().__getitem__, name)
 
     @property
     def success(self) -> bool:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.models import Model
 from sepcal.options import Bounds, open_ends
@@ -151,6 +152,7 @@ class MagnetometerInNineStates(BuiltInProblem):
         super().__init__(_core.magnetometer_in_nine_states(field_strength))
 
 
+@checked
 def fit_single_stage(
     model: AnyModel,
     data: Columns,
@@ -214,6 +216,7 @@ def fit_single_stage(
     )
 
 
+@checked
 def fit_haupt_kasdin(
     problem: TwoStepProblem | BuiltInProblem,
     data: Columns,
@@ -266,6 +269,7 @@ def fit_haupt_kasdin(
     )
 
 
+@checked
 def fit_alonso_shuster(
     data: Columns,
     field_strength: float,

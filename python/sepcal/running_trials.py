@@ -11,8 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from numbers import Integral
+from typing import Literal
 
 from sepcal._core import Error
+from sepcal.arguments import checked
 from sepcal.executors import Executors, stream
 from sepcal.monte_carlo_results import MonteCarlo, check_truth
 from sepcal.progress import progress_bar
@@ -31,6 +33,7 @@ Progress = Callable[[int, int], None]
 TOGETHER = 512  # trials that fill the lanes, and are done at once
 
 
+@checked
 def monte_carlo(
     trial: TrialFunction,
     trials: int | Iterable[int] = 1000,
@@ -38,7 +41,7 @@ def monte_carlo(
     seed: int = 0,
     truth: Mapping[str, float] | None = None,
     executor: Executors = None,
-    progress: bool | Progress | None = None,
+    progress: bool | Literal["tqdm"] | Progress | None = None,
     batch: int | None = None,
     keep_fits: bool = False,
 ) -> MonteCarlo:
@@ -61,8 +64,8 @@ def monte_carlo(
         executor: A concurrent.futures.Executor, left open; a function that makes one, as
             ProcessPoolExecutor does, which is also replaced where a dying worker breaks it; None:
             one trial after the other, here.
-        progress: A bar on standard error, None: where that is a terminal; or a function of the
-            numbers of trials done and in all.
+        progress: A bar on standard error, None: where that is a terminal, and in a notebook;
+            "tqdm": that of tqdm.auto; or a function of the numbers of trials done and in all.
         batch: Trials a task; more than one where a trial takes less than some ten milliseconds.
             None: one, or 512 of a DesignTrial whose trials are fitted side by side.
         keep_fits: The records hold whole fits, with covariance and samples, instead of Estimates.
@@ -76,6 +79,15 @@ def monte_carlo(
             can't be sent to it.
         KeyboardInterrupt: As ever; pending trials are cancelled, those that threads or an executor
             left open are at are waited for. stream_trials() lets one keep what was done.
+
+    Example:
+        >>> trial = sepcal.SimulatedTrial(sepcal.PitotStatic(), simulation={"rows": 100})
+        >>> study = sepcal.monte_carlo(trial, 40, seed=1, progress=False)
+        >>> study
+        <sepcal.MonteCarlo 40 trials: 40 converged>
+        >>> low, high = study.summary()["w_n"].coverage_limits
+        >>> low < 0.95 < high
+        True
     """
     indices = _to_indices(trials)
     records: list[TrialRecord] = []
@@ -93,6 +105,7 @@ def monte_carlo(
     return MonteCarlo(records, truth)
 
 
+@checked
 def stream_trials(
     trial: TrialFunction,
     trials: int | Iterable[int] = 1000,
@@ -106,6 +119,14 @@ def stream_trials(
 
     MonteCarlo(records) makes a study of them, of those there are. Close it, or leave the loop, and
     pending trials are cancelled. Arguments and errors are those of monte_carlo().
+
+    Example:
+        >>> def trial(rng):
+        ...     return {"mean": rng.normal(size=100).mean()}
+        ...
+        >>> means = [record.value["mean"] for record in sepcal.stream_trials(trial, 50)]
+        >>> len(means), round(float(np.mean(means)), 1) + 0.0
+        (50, 0.0)
     """
     indices = _to_indices(trials)
     if not isinstance(seed, Integral):
@@ -149,7 +170,7 @@ def _to_indices(trials: int | Iterable[int]) -> range | list[int]:
 
 
 @contextmanager
-def _progress_of(progress: bool | Progress | None) -> Iterator[Progress]:
+def _progress_of(progress: bool | Literal["tqdm"] | Progress | None) -> Iterator[Progress]:
     """What to call after each trial."""
     if callable(progress):
         yield progress

@@ -9,12 +9,13 @@ from typing import Any, Unpack
 from numpy.random import Generator
 
 from sepcal._core import Error
+from sepcal.arguments import checked
 from sepcal.calibration import Calibration
 from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
 from sepcal.models import FiveHoleProbe, Magnetometer, PitotStatic
 from sepcal.options import to_core
-from sepcal.own_effect import name_effects
+from sepcal.own_effect import given_effects, name_effects
 from sepcal.simulation import SimulatedFlight, simulate
 
 ROTATION = ("eta_x", "eta_y", "eta_z")
@@ -22,6 +23,7 @@ ROWS_TO_TRY = 20
 SEEDS = 2**63
 
 
+@checked
 class SimulatedTrial:
     """simulate() with a seed of the trial's own, then fit(), for sepcal.monte_carlo().
 
@@ -37,6 +39,12 @@ class SimulatedTrial:
         Error: As simulate() and fit() refuse an argument; the model is no probe that can be flown;
             a Magnetometer with a field's strength flies with a rotation, which it can't see, so
             that its truth means other parameters than the fit.
+
+    Example:
+        >>> trial = sepcal.SimulatedTrial(sepcal.PitotStatic(), simulation={"rows": 60})
+        >>> fit, truth = trial(np.random.default_rng(1))
+        >>> fit.rows, truth["w_n"]
+        (60, -3.8)
     """
 
     def __init__(
@@ -56,7 +64,7 @@ class SimulatedTrial:
         if "seed" in self.simulation:
             raise Error("simulation has a seed; each trial has one of its own, leave it out")
         self.options: FitOptions = {**options, "threads": options.get("threads") or 1}
-        to_core({**self.options, "effects": name_effects(self.options.get("effects") or ())})
+        to_core({**self.options, "effects": name_effects(given_effects(self.options))})
         tried = simulate(model, **{**self.simulation, "rows": ROWS_TO_TRY})
         if any(tried.truth.get(name) for name in ROTATION if name not in model.parameters):
             raise Error(

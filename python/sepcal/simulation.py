@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import checked, shown
 from sepcal.flight import Flight
 from sepcal.geometry import Aircraft
 from sepcal.states_module import states_module
@@ -21,6 +22,10 @@ class SimulatedFlight(Flight):
         truth: The parameters' true values by name, those of hidden effects among them
             ("wind[altitude_m].n"). It may be given as the parameters of another simulation.
         effects: Names of the hidden effects, aliases resolved.
+
+    Example:
+        >>> sepcal.simulate("pitot-static", rows=100).truth["w_n"]
+        -3.8
     """
 
     truth: dict[str, float]
@@ -35,6 +40,7 @@ class SimulatedProbe(Protocol):
     def _settings(self) -> dict[str, float | tuple[float, ...]]: ...
 
 
+@checked
 def simulate(
     model: SimulatedProbe | Aircraft | str,
     *,
@@ -71,6 +77,11 @@ def simulate(
     Raises:
         Error: A parameter, output, effect, driver or probe that there isn't, sizes of another
             number than the effect's components, or a value out of range.
+
+    Example:
+        >>> flight = sepcal.simulate("magnetometer", rows=300, hide={"bias[current_a]": 0.2})
+        >>> flight.rows, flight.effects, flight.truth["bias[current_a].x"]
+        (300, ('bias[current_a]',), 0.2)
     """
     kind, deviations = (noise, {}) if isinstance(noise, str) else ("white", dict(noise))
     given = dict(parameters or {})
@@ -86,6 +97,8 @@ def simulate(
     if isinstance(model, Aircraft):
         whole["aircraft"] = json.loads(model.to_json())
     elif not isinstance(model, str):
+        if not hasattr(model, "_settings"):
+            raise _core.Error(f"{shown(model)} can't be flown; give a probe, or the name of one")
         whole["options"] = {**whole.get("options", {}), **model._settings()}
     try:
         text = json.dumps(whole, allow_nan=False)

@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import Missing, checked, shown
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns, to_column
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.plots import Backend, Theme
@@ -19,12 +20,20 @@ from sepcal.states_module import states_module
 from sepcal.tracking import units_of_states
 
 
+@checked
 class Smoothed(_core.SmoothedRecord):
     """States and process noise, given all samples. `smoothed["alpha"]` is one state, (N,).
 
     Attributes:
         time: (N,) [s]; None where the data have none, and where it was pickled.
         units: Of states and outputs by name, as far as they are known; pickled they are lost.
+
+    Example:
+        >>> flight = sepcal.datasets.load("aircraft")
+        >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+        >>> smoothed = path.smooth({"ax": 0.05})
+        >>> smoothed["u"].shape == (flight.rows,)
+        True
     """
 
     time: Array | None = None
@@ -82,14 +91,15 @@ class Smoothed(_core.SmoothedRecord):
 
     def __getitem__(self, state: str) -> Array:
         """x(k|N) of one state, (N,)."""
-        if state not in self.states:
-            raise KeyError(f"there is no state '{state}'; there are: {', '.join(self.states)}")
+        if not isinstance(state, str) or state not in self.states:
+            raise Missing(f"there is no state {shown(state)}; there are: {', '.join(self.states)}")
         return np.asarray(self.x[:, self.states.index(state)])
 
     def __repr__(self) -> str:
         return f"<sepcal.Smoothed {', '.join(self.states)}: {len(self.x)} rows>"
 
 
+@checked
 def smooth(
     model: AnyModel,
     data: Columns,

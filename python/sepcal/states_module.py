@@ -5,13 +5,15 @@ from __future__ import annotations
 
 from types import ModuleType
 
+from sepcal.arguments import NotInstalled
+
 
 def states_module() -> ModuleType:
-    """sepcal._states. Raises ImportError where the build left it out, as one for sensors alone."""
+    """sepcal._states. Raises Error where the build left it out, as one for sensors alone."""
     try:
         from sepcal import _states
     except ImportError as error:
-        raise ImportError(
+        raise NotInstalled(
             "this sepcal was built for sensors alone, without filters, models with a state and "
             "aircraft; build all of it: cmake --build build"
         ) from error

@@ -12,6 +12,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal._core import StepwiseStep
+from sepcal.arguments import checked
 from sepcal.diagnosis import Diagnosis
 from sepcal.options import to_names
 from sepcal.pages import Page, Row
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 Fitted = TypeVar("Fitted")
 
 
+@checked
 class Stepwise(Page, Generic[Fitted]):
     """Effects added one after another until nothing passed. `print()` shows the steps.
 
@@ -33,6 +35,13 @@ class Stepwise(Page, Generic[Fitted]):
             to be added, as real fits have it), "fit_failed" (that of the next one).
         reason: The same in a sentence.
         diagnosis: Of the last fit.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> steps = base.diagnose(auto=True)
+        >>> steps.effects, steps.end
+        (['wind[altitude_m]'], 'nothing_found')
     """
 
     _shown = ("name", "p_adjusted", "partial_f", "predicted_drop", "found_drop", "rmse_after")

@@ -10,6 +10,7 @@ from typing import Any, Literal, Unpack
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import Missing, Misuse, checked, shown
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight
@@ -18,16 +19,24 @@ from sepcal.own_state_model import AnyModel, as_model
 from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 from sepcal.states_module import states_module
+from sepcal.tables import table_of
 
 REFUSED = ("effects", *LOG_CHOICE)  # of a fit's options
 
 
+@checked
 class Track(_core.Track):
     """Estimates against time. `track["Za"]` is one of them, (M,).
 
     Attributes:
         units: Of states, parameters and outputs by name, as far as they are known; pickled they are
             lost.
+
+    Example:
+        >>> flight = sepcal.datasets.load("aircraft")
+        >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+        >>> path.track(start_rows=200).names[:3]
+        ('u', 'v', 'w')
     """
 
     units: Mapping[str, str] = MappingProxyType({})
@@ -71,9 +80,23 @@ class Track(_core.Track):
         return as_figure(picture_track(self, what), backend, theme)
 
     def _place(self, name: str) -> int:
-        if name not in self.names:
-            raise KeyError(f"there is no '{name}'; there are: {', '.join(self.names)}")
+        if not isinstance(name, str) or name not in self.names:
+            raise Missing(f"there is no {shown(name)}; there are: {', '.join(self.names)}")
         return self.names.index(name)
+
+    def _repr_html_(self) -> str:
+        """The last estimates as a small table, for notebooks."""
+        rows = [
+            {
+                "name": name,
+                "estimate": float(self.estimates[-1, i]),
+                "standard_deviation": float(self.standard_deviations[-1, i]),
+                "unit": self.units.get(name, ""),
+            }
+            for i, name in enumerate(self.names)
+        ]
+        caption = f"sepcal.Track: the last of {len(self.rows)} rows"
+        return table_of(caption, ("name", "estimate", "standard_deviation", "unit"), rows)
 
     def __repr__(self) -> str:
         return f"<sepcal.Track {', '.join(self.names)}: {len(self.rows)} rows>"
@@ -90,6 +113,7 @@ def units_of_states(units: Mapping[str, str]) -> dict[str, str]:
 
 
 @spelled_out(without=(*REFUSED, "process_noise", "method"))
+@checked
 def track(  # type: ignore[misc]  # its process_noise drives the filter, not errors of a fit
     model: AnyModel,
     data: Columns,
@@ -145,7 +169,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
         )
     for name in options:
         if name not in FitOptions.__annotations__:
-            raise TypeError(f"track() has no option '{name}'; help(sepcal.track) shows what it has")
+            raise Misuse(f"track() has no option '{name}'; help(sepcal.track) shows what it has")
     for name in REFUSED:
         if options.get(name):
             raise _core.Error(f"track() knows no {name}; leave it out")

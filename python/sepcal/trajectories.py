@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack, get_type_hints
 
 from sepcal import _core
+from sepcal.arguments import Misuse, checked, fits, shown, words
 from sepcal.geometry import Aircraft
 from sepcal.models import Model, Vector, _to_vector
 from sepcal.states_module import states_module
@@ -52,6 +53,9 @@ class TrajectoryOptions(TypedDict, total=False):
     scales_about_start: bool
 
 
+KINDS = get_type_hints(TrajectoryOptions)
+
+
 class TrajectoryModel(Model):
     """A model with a state along a record; use FlightPath, ShortPeriod, or Trajectory for your own.
 
@@ -79,7 +83,11 @@ def complete(options: TrajectoryOptions) -> dict[str, Any]:
     for name in options:
         if name not in STATE_OPTIONS:
             known = ", ".join(STATE_OPTIONS)
-            raise TypeError(f"a trajectory has no option '{name}'; it has: {known}")
+            raise Misuse(f"a trajectory has no option '{name}'; it has: {known}")
+        is_one_name = name in ("measured", "outputs") and isinstance(options[name], str)  # type: ignore[literal-required]
+        if not is_one_name and not fits(options[name], KINDS[name]):  # type: ignore[literal-required]
+            value = shown(options[name])  # type: ignore[literal-required]
+            raise Misuse(f"{name} is {value}; give {words(KINDS[name])}")
     whole: dict[str, Any] = {**STATE_OPTIONS, **options}
     for name in ("measured", "outputs"):
         if isinstance(whole[name], str):
@@ -97,6 +105,7 @@ def to_core_options(options: dict[str, Any]) -> _states.TrajectoryOptions:
     return core
 
 
+@checked
 class ShortPeriod(TrajectoryModel):
     """The short period of an aircraft, for small changes about a trimmed flight.
 
@@ -106,6 +115,10 @@ class ShortPeriod(TrajectoryModel):
 
     Args:
         **options: TrajectoryOptions.
+
+    Example:
+        >>> sepcal.ShortPeriod().nonlinear
+        ('Za', 'Ma', 'Mq')
     """
 
     states = ("alpha", "q")
@@ -115,6 +128,7 @@ class ShortPeriod(TrajectoryModel):
         super().__init__(states_module().short_period(to_core_options(whole)), whole)
 
 
+@checked
 class FlightPath(TrajectoryModel):
     """Flight path reconstruction, or data compatibility (Eqs. B4-B9).
 
@@ -136,6 +150,12 @@ class FlightPath(TrajectoryModel):
     Raises:
         Error: An output that there isn't; when fitted, data in degrees, az of the other sign, or a
             pitch beyond 85 deg.
+
+    Example:
+        >>> flight = sepcal.datasets.load("aircraft")
+        >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+        >>> path.status, path.model
+        ('converged', 'path')
     """
 
     def __init__(

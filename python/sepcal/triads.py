@@ -108,6 +108,11 @@ class Triad:
 
     Raises:
         Error: A part without its tables or function, or not three outputs.
+
+    Example:
+        >>> compass = sepcal.Triad(sepcal.triads.FieldInBody(), sepcal.triads.Misalignment())
+        >>> list(compass.nonlinear)
+        [('eta_x', 'rad', -0.5, 0.5), ('eta_y', 'rad', -0.5, 0.5), ('eta_z', 'rad', -0.5, 0.5)]
     """
 
     def __init__(self, reference: Reference, *factors: Factor) -> None:

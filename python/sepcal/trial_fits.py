@@ -11,13 +11,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.fit_options import FitOptions
+from sepcal.matrices import to_numbers
 from sepcal.options import refuse_log_choice, spelled_out, to_core
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.plots import Backend, Theme
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class TrialFits:
     """The fits of K trials."""
@@ -53,6 +56,7 @@ class TrialFits:
 
 
 @spelled_out(without=["effects"])
+@checked
 def fit_trials(
     model: AnyModel,
     design: Columns,
@@ -78,6 +82,18 @@ def fit_trials(
 
     Raises:
         Error: Bad input or misuse: one line that names the culprit and the way out.
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> fits = sepcal.fit_trials(Line(), {"v": v}, {"z": [2.0 * v, 3.0 * v]})
+        >>> fits.estimates.round(6).ravel().tolist()
+        [2.0, 3.0]
     """
     model = as_model(model)
     if model.runs_in_python:
@@ -107,7 +123,7 @@ def fit_trials(
 
 
 def _to_trials(name: str, values: ArrayLike) -> Array:
-    array = np.asarray(values, dtype=np.float64)
+    array = to_numbers(f"the measurements of '{name}'", values)
     if array.ndim != 2:
         raise _core.Error(
             f"the measurements of '{name}' have the shape {array.shape}; give a row a trial, (K, N)"

@@ -7,11 +7,14 @@ import os
 from collections.abc import Mapping
 
 from sepcal import _core
+from sepcal.arguments import Misuse, shown
 from sepcal.printing import in_line
 
 
 def name_of(file: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
     """A file's name as the engine takes it. Raises Error for no UTF-8, or a NUL."""
+    if not isinstance(file, str | bytes | os.PathLike):
+        raise Misuse(f"{shown(file)} is no file; give its name, a text or a path")
     name = os.fsdecode(file)
     if "\0" in name:
         raise _core.Error(f"{in_line(name)}: a file's name can't hold a NUL")

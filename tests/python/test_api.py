@@ -15,7 +15,7 @@ from oracle.cases import CASE_NAMES, state_case
 from own_models import BUILT_IN
 
 PROBE = sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5, lever_arm=(0.35, 0.0, -0.02))
-PUBLIC_MODULES = {"rivals", "triads"}
+PUBLIC_MODULES = {"datasets", "rivals", "triads"}
 
 
 @pytest.fixture

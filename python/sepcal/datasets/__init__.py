@@ -8,6 +8,7 @@ from importlib import resources
 from typing import Literal
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.flight import read_csv
 from sepcal.simulation import SimulatedFlight
 
@@ -21,6 +22,7 @@ def __dir__() -> list[str]:
     return __all__
 
 
+@checked
 def load(name: Literal["aircraft", "magnetometer", "pitot"] | str) -> SimulatedFlight:
     """A flight of the simulator, read by instruments that wander, round and are wrong at times.
 
@@ -36,6 +38,11 @@ def load(name: Literal["aircraft", "magnetometer", "pitot"] | str) -> SimulatedF
 
     Raises:
         Error: Another name.
+
+    Example:
+        >>> flight = sepcal.datasets.load("magnetometer")
+        >>> flight.effects, flight.truth["n_x"]
+        (('bias[current_a]',), 12.0)
     """
     if name not in NAMES:
         raise _core.Error(f"there is no data set {name!r}; there are: {', '.join(NAMES)}")

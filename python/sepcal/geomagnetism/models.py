@@ -14,6 +14,7 @@ from functools import lru_cache
 from typing import Any
 
 from sepcal import _core
+from sepcal.arguments import checked, shown
 
 Date = datetime.date | datetime.datetime | str | float
 NANOTESLA = 1e-3  # [uT]
@@ -56,6 +57,7 @@ class EarthField:
         return math.degrees(math.atan2(self.down, math.hypot(self.north, self.east)))
 
 
+@checked
 def earth_field(latitude: float, longitude: float, altitude: float, date: Date) -> EarthField:
     """The Earth's field by the World Magnetic Model of the day.
 
@@ -71,6 +73,11 @@ def earth_field(latitude: float, longitude: float, altitude: float, date: Date) 
 
     Raises:
         Error: A place off the Earth, a day outside the models' spans, no pygeomag.
+
+    Example:
+        >>> field = sepcal.earth_field(47.4, 8.5, 400.0, 2025.5)
+        >>> round(field.north), round(field.down)  # uT
+        (22, 43)
     """
     if not -90 <= latitude <= 90:
         raise _core.Error(f"a latitude of {latitude:g} deg is off the Earth: -90 to 90")
@@ -95,6 +102,8 @@ def decimal_year(date: Date) -> float:
         if not math.isfinite(date):
             raise _core.Error(f"{date} is no year")
         return float(date)
+    if not isinstance(date, datetime.date):
+        raise _core.Error(f"{shown(date)} is no date; give a date, 2025.5 or '2025-07-02'")
     if not isinstance(date, datetime.datetime):
         date = datetime.datetime(date.year, date.month, date.day)
     first = datetime.datetime(date.year, 1, 1, tzinfo=date.tzinfo)

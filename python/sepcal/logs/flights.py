@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.flight import Flight, csv_of
 from sepcal.geomagnetism.models import Date
 from sepcal.logs.earth import FieldColumns, find_field
@@ -46,6 +47,7 @@ class LoggedFlight(Flight):
         write_whole({target: csv_of(self), sidecar_of(target): to_json(self.conversion)})
 
 
+@checked
 def read_log(
     file: str | os.PathLike[str],
     sensor: str | None = None,

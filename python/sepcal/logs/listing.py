@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sepcal import _core
+from sepcal.arguments import checked
 from sepcal.geomagnetism.command import describe_place, paste
 from sepcal.logs.earth import find_field
 from sepcal.logs.reading import find_lacking, open_log
@@ -37,6 +38,7 @@ class LogContents:
         return self.text
 
 
+@checked
 def list_log(file: str | os.PathLike[str], *, cut_off: bool = False) -> LogContents:
     """Sensors, channels, modes and spans of a log, and what can be calibrated from it.
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from sepcal import _core
+from sepcal.arguments import shown
 from sepcal.plots import Backend, Theme
 from sepcal.plotting.arrange import arrange
 from sepcal.plotting.themes import THEMES, recolour
@@ -52,8 +53,8 @@ def as_figure(figures: Sequence[Figure], backend: Backend, theme: Theme, columns
 
 def _refuse(argument: str, given: object, known: Sequence[str]) -> None:
     """Raises Error for a word that is none of those known."""
-    if given not in known:
-        raise _core.Error(f"{argument} is {given!r}; it is {_either(known)}")
+    if not isinstance(given, str) or given not in known:
+        raise _core.Error(f"{argument} is {shown(given)}; it is {_either(known)}")
 
 
 def _either(words: Sequence[str]) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 
 from sepcal import _core
 from sepcal.aircraft_fits import AircraftFit
+from sepcal.arguments import checked
 from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
 from sepcal.flight import AnyFlight, to_flight
@@ -24,6 +25,7 @@ from sepcal.whole_files import name_of, write_whole
 Path = str | os.PathLike[str]
 
 
+@checked
 def report(
     calibrations: Calibration | AircraftFit | Sequence[Calibration | AircraftFit],
     file: Path,
@@ -53,6 +55,13 @@ def report(
     Raises:
         Error: No calibration, several models, no flight, bad input as in Calibration.compare(),
             plotly is not installed, a file that can't be written.
+
+    Example:
+        >>> flight = sepcal.datasets.load("pitot")
+        >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+        >>> sepcal.report([base, base.add("wind[altitude_m]")], folder / "report.html")
+        >>> (folder / "report.html").stat().st_size > 1_000_000  # Plotly is in it
+        True
     """
     chain: list[Any] = (
         [calibrations] if isinstance(calibrations, Calibration | AircraftFit) else [*calibrations]

@@ -14,6 +14,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from sepcal._core import Error
+from sepcal.arguments import checked
 from sepcal.columns import Array, Columns
 from sepcal.design_trial import DesignTrial
 from sepcal.executors import Executors
@@ -195,6 +196,7 @@ class PairedTrial(DesignTrial):
         return False
 
 
+@checked
 def validate(
     model: AnyModel,
     design: Columns,
