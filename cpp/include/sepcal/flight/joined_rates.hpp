@@ -10,9 +10,11 @@
 namespace sepcal {
 
 struct RateJoining {
-  /// What stands between two samples: "linear", the straight line between them, or "held", the
-  /// earlier one.
-  std::string how = "linear";
+  /// What stands in a row: "smooth", a parabola fitted to the samples about it; "linear", the
+  /// straight line between two samples; "held", the earlier of them. A line has half the noise
+  /// between two samples that it has at them, which pulls an estimate of the clocks' offset; a
+  /// parabola has the same noise everywhere.
+  std::string how = "smooth";
 
   /// What is added to the other log's time [s].
   double offset = 0.0;

@@ -45,8 +45,15 @@ class ByRate {
 };
 
 const char* say_how(Joining joining) {
-  return joining == Joining::held ? "each held from its sample to the next"
-                                  : "on straight lines between their samples";
+  switch (joining) {
+    case Joining::smooth:
+      return "on parabolas through the samples about each row";
+    case Joining::linear:
+      return "on straight lines between their samples";
+    case Joining::held:
+      break;
+  }
+  return "each held from its sample to the next";
 }
 
 /// Of a log's rows, in seconds. Throws Error where there is none.
@@ -81,12 +88,13 @@ void join_rates(Flight& flight, const MeasuredRows& measured, Joining joining,
     if (std::ranges::find(measured.headers, column.header) != measured.headers.end()) continue;
     const auto is_empty = [&](std::size_t row) { return !files::is_reading(column.values[row]); };
     if (std::ranges::none_of(measured.rows, is_empty)) continue;
-    const SlowColumn slow(time, column.values, turn_of(column.header));
+    const SlowColumn slow(time, column.values, joining, turn_of(column.header));
     std::vector<double> values(column.values.begin(), column.values.end());
     std::size_t filled = 0;
     for (const std::size_t row : measured.rows) {
-      if (!is_empty(row) || !files::is_reading(time[row])) continue;
-      values[row] = slow.at(time[row], joining);
+      const bool stays = joining != Joining::smooth && !is_empty(row);
+      if (stays || !files::is_reading(time[row])) continue;
+      values[row] = slow.at(time[row]);
       filled += std::isnan(values[row]) ? 0 : 1;
     }
     if (filled == 0) continue;
@@ -209,9 +217,9 @@ Flight join_rates(const Flight& measured, const Flight& other, const RateJoining
       both.push_back(column.header);
       continue;
     }
-    const SlowColumn slow(theirs, column.values, turn_of(column.header));
+    const SlowColumn slow(theirs, column.values, joining, turn_of(column.header));
     Brought brought{column.header, {}};
-    for (const double t : time) brought.values.push_back(slow.at(t, joining));
+    for (const double t : time) brought.values.push_back(slow.at(t));
     rates.add(column.header, slow.interval());
     columns.push_back(std::move(brought));
   }
