@@ -20,13 +20,14 @@ struct RateJoining {
   double offset = 0.0;
 };
 
-/// Rows and columns of `measured`, and the columns of `other` at these rows. Nothing goes beyond
-/// the samples of a column or across its gaps (five usual intervals). Rows outside of the other
-/// log are left out; a cell in a gap is NaN. Angles (headers that end in _deg or _rad) go the short
-/// way round. Of a column that both have, that of `measured` stays. Notes say all of this. Both
-/// need a column of time, in any unit. Throws Error where there is none, where it runs back, and
-/// where the clocks have no time in common; OptionError for another `how` or an offset that is no
-/// number.
+/// Rows and columns of `measured`, and the columns of `other` at these rows, both as a probe reads
+/// them: under sepcal's names, velocity from speed and track, attitude from a quaternion. Nothing
+/// goes beyond the samples of a column or across its gaps (five usual intervals). Rows outside of
+/// the other log are left out; a cell in a gap is NaN. Angles (headers that end in _deg or _rad) go
+/// the short way round. Of a column that both have, that of `measured` stays. Notes say all of
+/// this. Both need a column of time, in any unit. Throws Error where there is none, where it runs
+/// back, and where the clocks have no time in common; OptionError for another `how` or an offset
+/// that is no number.
 Flight join_rates(const Flight& measured, const Flight& other, const RateJoining& options = {});
 
 }  // namespace sepcal
