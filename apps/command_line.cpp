@@ -63,8 +63,9 @@ void add_joining_options(CLI::App& join, Arguments& arguments) {
   add_file(join, "OTHER", arguments.other, "the log whose columns are brought to these rows")
       ->required();
   join.add_option("--how", arguments.joining.how,
-                  "what stands between two samples: the straight line, or the earlier one")
-      ->type_name("linear|held")
+                  "what stands in a row: a parabola through the samples about it, the straight line "
+                  "between two, or the earlier one")
+      ->type_name("smooth|linear|held")
       ->capture_default_str();
   join.add_option("--offset", arguments.joining.offset, "what is added to OTHER's time [s]")
       ->type_name("S")

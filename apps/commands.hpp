@@ -27,6 +27,7 @@ inline constexpr std::array commands{
             "flight paths and aerodynamic coefficients"},
     Command{"model", CommandKind::python, "VERB", "a model of your own, a class of Python"},
     Command{"check", CommandKind::file, "FILE", "says what a log is, and whose it may be"},
+    Command{"join", CommandKind::file, "SENSOR OTHER", "brings another log to a sensor's rows"},
     Command{"log", CommandKind::python, "LOG",
             "lists an autopilot's log, or writes a flight of it"},
     Command{"report", CommandKind::python, "FLIGHT CAL", "writes a calibration as a page to read"},

@@ -56,18 +56,19 @@ bool has(const Flight& flight, std::string_view quantity) {
   });
 }
 
-/// `sepcal check FILE`: by the program whose columns the file has.
-int run_check(const std::vector<NamedProgram>& programs, int argc, char** argv) {
+/// `sepcal check FILE`, `sepcal join FILE OTHER`: by the program whose columns the file has.
+int run_on_file(const std::vector<NamedProgram>& programs, int argc, char** argv) {
   const auto is_name = [](std::string_view word) { return !word.starts_with("-"); };
   char** const file = std::find_if(argv + 1, argv + argc, is_name);
   if (file == argv + argc) {
-    return refuse("check: name a file; an instrument's own has more: sepcal mag check --help");
+    return refuse(fmt::format(
+        "{0}: name a file; an instrument's own has more: sepcal mag {0} --help", argv[0]));
   }
   Guess guess;
   try {
-    guess = guess_instrument(read_csv(*file));
+    guess = guess_instrument(read_csv(*file), argv[0]);
   } catch (const std::exception& error) {
-    tell(page("sepcal check: {}\n", error.what()));
+    tell(page("sepcal {}: {}\n", argv[0], error.what()));
     return bad_usage;
   }
   tell(page("note: {}\n", guess.reason));
@@ -78,13 +79,14 @@ int run_check(const std::vector<NamedProgram>& programs, int argc, char** argv) 
   static char model[] = "--model=path";  // what an aircraft's log is checked for
   const bool names_model =
       std::ranges::any_of(words, [](std::string_view word) { return word.starts_with("--model"); });
-  if (guess.command == "aircraft" && !names_model) words.push_back(model);
+  if (guess.command == "aircraft" && !names_model && std::string_view(argv[0]) == "check")
+    words.push_back(model);
   return program->run("sepcal " + guess.command, static_cast<int>(words.size()), words.data());
 }
 
 }  // namespace
 
-Guess guess_instrument(const Flight& flight) {
+Guess guess_instrument(const Flight& flight, std::string_view verb) {
   std::vector<const Signature*> found;
   for (const Signature& signature : signatures()) {
     const auto is_there = [&](std::string_view quantity) { return has(flight, quantity); };
@@ -101,11 +103,11 @@ Guess guess_instrument(const Flight& flight) {
                         flight.name(), flight.list_columns())};
   }
   const Signature& first = *found.front();
-  std::string reason = fmt::format("{} is taken for the log of {}: sepcal {} check", flight.name(),
-                                   first.sensor, first.command);
+  std::string reason = fmt::format("{} is taken for the log of {}: sepcal {} {}", flight.name(),
+                                   first.sensor, first.command, verb);
   for (std::size_t i = 1; i < found.size(); ++i) {
-    reason += fmt::format("{}of {}: sepcal {} check", i == 1 ? "; it may also be that " : ", ",
-                          found[i]->sensor, found[i]->command);
+    reason += fmt::format("{}of {}: sepcal {} {}", i == 1 ? "; it may also be that " : ", ",
+                          found[i]->sensor, found[i]->command, verb);
   }
   return {std::string(first.command), std::move(reason)};
 }
@@ -123,7 +125,7 @@ int run_sepcal(const std::vector<NamedProgram>& programs, int argc, char** argv)
   }
   const auto program = std::ranges::find(programs, word, &NamedProgram::name);
   if (program != programs.end()) return program->run("sepcal " + word, argc - 1, argv + 1);
-  if (word == "check") return run_check(programs, argc - 1, argv + 1);
+  if (word == "check" || word == "join") return run_on_file(programs, argc - 1, argv + 1);
   const Command* const command = find_command(word);
   if (command != nullptr && command->kind == CommandKind::python) {
     tell(

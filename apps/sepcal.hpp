@@ -25,6 +25,6 @@ struct Guess {
   std::string command;  // "mag", or empty where there is none
   std::string reason;
 };
-Guess guess_instrument(const Flight& flight);
+Guess guess_instrument(const Flight& flight, std::string_view verb);
 
 }  // namespace sepcal::app

@@ -252,7 +252,7 @@ int Verbs::join() const {
   }
   OutputFile output(arguments_.output);
   const Flight joined =
-      join_rates(read_flight(), read_flight(arguments_.other, 0), arguments_.joining);
+      join_rates(read_flight(), read_flight(arguments_.other, {}, 0), arguments_.joining);
   files::write_flight(joined, output);
   output.commit();
   tell_notes(joined.notes());

@@ -24,6 +24,7 @@ from studies.trust.pairs import PAIR_SETS
 from studies.trust.part import Key, Part, Row
 from studies.trust.positions import POSITIONS
 from studies.trust.power import POWER
+from studies.trust.rates import RATES
 from studies.trust.screens import REFITS
 from studies.trust.simplest import SIMPLEST, TWO_CAUSES
 from studies.trust.simulator.disturbances import DISTURBANCES
@@ -45,6 +46,7 @@ PARTS: dict[str, Part] = {
     "unmeasured": UNLOGGED,
     "errors": ERRORS,
     "positions": POSITIONS,
+    "rates": RATES,
     "minima": MINIMA,
     "hard": HARD_PROBLEMS,
 }

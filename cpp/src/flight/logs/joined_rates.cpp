@@ -13,6 +13,7 @@
 
 #include "flight/files/headers.hpp"
 #include "flight/files/invalid_cells.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/detail/quantity.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/joined_rates.hpp"
@@ -45,8 +46,15 @@ class ByRate {
 };
 
 const char* say_how(Joining joining) {
-  return joining == Joining::held ? "each held from its sample to the next"
-                                  : "on straight lines between their samples";
+  switch (joining) {
+    case Joining::smooth:
+      return "on parabolas through the samples about each row";
+    case Joining::linear:
+      return "on straight lines between their samples";
+    case Joining::held:
+      break;
+  }
+  return "each held from its sample to the next";
 }
 
 /// Of a log's rows, in seconds. Throws Error where there is none.
@@ -81,12 +89,13 @@ void join_rates(Flight& flight, const MeasuredRows& measured, Joining joining,
     if (std::ranges::find(measured.headers, column.header) != measured.headers.end()) continue;
     const auto is_empty = [&](std::size_t row) { return !files::is_reading(column.values[row]); };
     if (std::ranges::none_of(measured.rows, is_empty)) continue;
-    const SlowColumn slow(time, column.values, turn_of(column.header));
+    const SlowColumn slow(time, column.values, joining, turn_of(column.header));
     std::vector<double> values(column.values.begin(), column.values.end());
     std::size_t filled = 0;
     for (const std::size_t row : measured.rows) {
-      if (!is_empty(row) || !files::is_reading(time[row])) continue;
-      values[row] = slow.at(time[row], joining);
+      const bool stays = joining != Joining::smooth && !is_empty(row);
+      if (stays || !files::is_reading(time[row])) continue;
+      values[row] = slow.at(time[row]);
       filled += std::isnan(values[row]) ? 0 : 1;
     }
     if (filled == 0) continue;
@@ -105,22 +114,36 @@ namespace {
 
 using namespace logs;  // this room's own
 
-/// A log's time [s], which never runs back. Throws Error where it does.
-std::vector<double> read_clock(const Flight& flight) {
-  std::vector<double> time = read_time(flight);
+/// Throws Error where time runs back in it, a value a row in the unit that messages show.
+void check_clock(const Flight& flight, std::span<const double> time) {
   double before = -infinity;
   for (std::size_t row = 0; row < time.size(); ++row) {
     if (!files::is_reading(time[row])) continue;
     if (time[row] < before) {
       throw Error(fmt::format(
-          "{}: time runs back, from {} to {} s; logs are joined by one clock each: sort the rows, "
+          "{}: time runs back, from {} to {}; logs are joined by one clock each: sort the rows, "
           "or join the parts one by one",
           flight.locate(row), before, time[row]));
     }
     before = time[row];
   }
   if (!std::isfinite(before)) throw Error(flight.name() + ": no row has a time");
-  return time;
+}
+
+/// A log as a probe reads it, and its time [s].
+struct ClockedLog {
+  ReadFlight read;
+  std::vector<double> time;
+};
+
+/// Throws Error where there is no time, or where it runs back in the log.
+ClockedLog read_clocked(const Flight& flight) {
+  ClockedLog log{read_as(flight, {}), {}};
+  log.time = read_time(log.read.flight);
+  const auto column = files::find_quantity(log.read.flight, "time", files::UnitKind::time)->column;
+  const Flight::Column* const logged = flight.find(column->logged_header());
+  check_clock(flight, logged == nullptr ? std::span<const double>(log.time) : logged->values);
+  return log;
 }
 
 std::pair<double, double> ends_of(const std::vector<double>& time) {
@@ -189,17 +212,15 @@ std::string say_offset(double offset) {
   return fmt::format("{:.10g} s are added to its clock", offset);
 }
 
-}  // namespace
-
-Flight join_rates(const Flight& measured, const Flight& other, const RateJoining& options) {
-  const Joining joining = parse_joining(options.how);
-  if (!std::isfinite(options.offset)) {
-    throw OptionError({Option{"offset"}, " is no finite number of seconds"});
-  }
-  const std::vector<double> time = read_clock(measured);
-  std::vector<double> theirs = read_clock(other);
-  for (double& t : theirs) t += options.offset;
-  check_overlap(measured, time, other, theirs, options.offset);
+/// The second's columns in the rows of the first.
+Flight join_clocked(const ClockedLog& rows, const ClockedLog& brings, Joining joining,
+                    double offset) {
+  const Flight& measured = rows.read.flight;
+  const Flight& other = brings.read.flight;
+  const std::vector<double>& time = rows.time;
+  std::vector<double> theirs = brings.time;
+  for (double& t : theirs) t += offset;
+  check_overlap(measured, time, other, theirs, offset);
   std::vector<Brought> columns;
   std::vector<std::string> both;
   ByRate rates;
@@ -209,9 +230,9 @@ Flight join_rates(const Flight& measured, const Flight& other, const RateJoining
       both.push_back(column.header);
       continue;
     }
-    const SlowColumn slow(theirs, column.values, turn_of(column.header));
+    const SlowColumn slow(theirs, column.values, joining, turn_of(column.header));
     Brought brought{column.header, {}};
-    for (const double t : time) brought.values.push_back(slow.at(t, joining));
+    for (const double t : time) brought.values.push_back(slow.at(t));
     rates.add(column.header, slow.interval());
     columns.push_back(std::move(brought));
   }
@@ -226,8 +247,8 @@ Flight join_rates(const Flight& measured, const Flight& other, const RateJoining
   }
   Flight joined(fmt::format("{} with {}", measured.name(), other.name()));
   const auto note = [&](const std::string& text) { joined.note(joined.name() + ": " + text); };
-  for (const Flight* flight : {&measured, &other}) {
-    for (const std::string& said : flight->notes()) joined.note(said);
+  for (const ClockedLog* log : {&rows, &brings}) {
+    for (const std::string& said : log->read.notes) joined.note(said);
   }
   for (const Flight::Column& column : measured.columns()) {
     joined.add(column.header, chosen(column.values, met));
@@ -247,7 +268,7 @@ Flight join_rates(const Flight& measured, const Flight& other, const RateJoining
     joined.label(labels_at(other, theirs, chosen(time, met)));
   }
   note(fmt::format("{} of {} are brought to the rows of {}, {}; {}", rates.say(), other.name(),
-                   measured.name(), say_how(joining), say_offset(options.offset)));
+                   measured.name(), say_how(joining), say_offset(offset)));
   if (met.size() < measured.rows()) {
     note(fmt::format("{} of {} rows of {} are left out: {} has no samples on both sides of them",
                      measured.rows() - met.size(), measured.rows(), measured.name(), other.name()));
@@ -261,6 +282,16 @@ Flight join_rates(const Flight& measured, const Flight& other, const RateJoining
                      other.name()));
   }
   return joined;
+}
+
+}  // namespace
+
+Flight join_rates(const Flight& measured, const Flight& other, const RateJoining& options) {
+  const Joining joining = parse_joining(options.how);
+  if (!std::isfinite(options.offset)) {
+    throw OptionError({Option{"offset"}, " is no finite number of seconds"});
+  }
+  return join_clocked(read_clocked(measured), read_clocked(other), joining, options.offset);
 }
 
 }  // namespace sepcal

@@ -17,9 +17,10 @@ struct MeasuredRows {
   std::vector<std::string> headers;  // that hold a reading in each of them
 };
 
-/// Gives every other column a value in those rows where it is empty there and has samples on both
-/// sides (joined_rates.hpp of the public headers says which); other cells stay as they are. Notes
-/// say what was brought. Throws OptionError where no time was logged, and of a log on disc.
+/// Gives every other column that is empty in some of those rows a value there, where it has samples
+/// on both sides (joined_rates.hpp of the public headers says which); smoothed, it has that value
+/// in all of them, else it stays where it was logged. Notes say what was brought. Throws
+/// OptionError where no time was logged, and of a log on disc.
 void join_rates(Flight& flight, const MeasuredRows& measured, Joining joining,
                 std::vector<std::string>& notes);
 

@@ -277,8 +277,8 @@ void RecordBuilder::refuse_other_rates(const std::vector<const LoggedQuantity*>&
                    flight_.name(),
                    whole == 0 ? "none" : fmt::format("one in {}", rows_.size() / whole),
                    rows_.size(), fmt::join(rates, ", ")),
-       Option{"join"}, " linear brings them to the rows of what is measured, ", Option{"join"},
-       " held as they last were"});
+       Option{"join"},
+       " smooth brings them to the rows of what is measured; linear and held do too"});
 }
 
 /// In seconds: times that differ as they were logged may be one there.

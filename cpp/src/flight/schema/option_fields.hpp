@@ -257,7 +257,7 @@ inline constexpr std::tuple option_fields{
             .in_file = InFile::where_set}),
     option("join", &LogChoice::join,
            {.sentence = "brings quantities that are logged at other times to the rows of the "
-                        "measured one: linear or held",
+                        "measured one: smooth, linear or held",
             .unset = "they stand in one row",
             .flags = "--join",
             .form = "HOW",
