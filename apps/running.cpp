@@ -10,6 +10,7 @@
 #include <new>
 
 #include "base/escaping.hpp"
+#include "base/name_list.hpp"
 #include "interrupt.hpp"
 #include "sepcal/detail/solver_log.hpp"
 #include "sepcal/error.hpp"
@@ -42,6 +43,24 @@ std::string explain_extras(const CLI::App& verb, const CLI::ParseError& error) {
   return numbers ? "; put commas and no blanks between an option's numbers" : "";
 }
 
+/// "; did you mean --k-alpha?" of an option that is nearly one of the verb's.
+std::string ask_for_option(const CLI::App& verb, const CLI::ParseError& error) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return "";
+  std::vector<std::string> known;
+  for (const CLI::Option* option : verb.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  std::string asked;
+  for (const std::string& word : verb.remaining()) {
+    if (!word.starts_with("--")) continue;
+    const std::string name = word.substr(0, word.find('='));
+    std::string similar = base::ask_for_similar(name, known, name.size() / 4);
+    std::erase(similar, '\'');
+    asked += similar;
+  }
+  return asked;
+}
+
 /// A log in the calibration's place is taken for another flight.
 std::string explain_missing(const CLI::App& verb, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return "";
@@ -62,11 +81,17 @@ std::string describe(const CLI::App& cli, const CLI::ParseError& error) {
     std::string what = error.what();
     std::ranges::replace(what, '\n', ' ');
     const CLI::App& verb = *cli.get_subcommands().front();
-    return what + explain_extras(verb, error) + explain_missing(verb, error);
+    return what + ask_for_option(verb, error) + explain_extras(verb, error) +
+           explain_missing(verb, error);
   }
   const std::vector<std::string> words = cli.remaining();
-  return (words.empty() ? "a verb is missing" : fmt::format("'{}' is no verb", words.front())) +
-         "; the verbs are: " + list_verbs(cli);
+  if (words.empty()) return "a verb is missing; the verbs are: " + list_verbs(cli);
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : cli.get_subcommands({})) verbs.push_back(verb->get_name());
+  const std::string similar = base::ask_for_similar(
+      words.front(), verbs, std::max<std::size_t>(1, words.front().size() / 3));
+  return fmt::format("'{}' is no verb{} verbs are: {}", words.front(),
+                     similar.empty() ? "; the" : similar + " The", list_verbs(cli));
 }
 
 int refuse_usage(const CLI::App& cli, const CLI::ParseError& error) {

@@ -75,6 +75,7 @@ __all__: list[str] = [
     "VISIBLE_FROM",
     "Window",
     "accelerometer",
+    "angles_of_quaternion",
     "attitude_independent_magnetometer",
     "autocorrelation",
     "bin_means",
@@ -3810,6 +3811,11 @@ class Innovation:
         """
 
 def accelerometer() -> Model: ...
+def angles_of_quaternion(
+    quaternion: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+) -> typing.Annotated[list[float], "FixedSize(3)"]: ...
 def attitude_independent_magnetometer(
     field_strength: typing.SupportsFloat | typing.SupportsIndex,
     noise: typing.SupportsFloat | typing.SupportsIndex = 0.0,

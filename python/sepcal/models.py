@@ -283,11 +283,13 @@ class Magnetometer(Model):
         field_strength: Only |h| [uT] is known: no attitude is needed, and a rotation, C_eta, can't
             be seen. Every parameter is nonlinear; the output `field` is zero in every row.
         mounting: Roll, pitch, yaw [deg] by which the sensor is turned against the body, as
-            autopilots have it: a Flight's readings are turned so before anything else.
-            "estimate": as the flight of a fit shows it.
+            autopilots have it, or a quaternion w, x, y, z from the sensor's axes to the body's: a
+            Flight's readings are turned so before anything else. "estimate": as the flight of a
+            fit shows it.
 
     Raises:
-        Error: Two of these contradict each other, or the strength is not positive.
+        Error: Two of these contradict each other, the strength is not positive, or a quaternion is
+            not of length one.
 
     Example:
         >>> flight = sepcal.datasets.load("magnetometer")
@@ -301,7 +303,7 @@ class Magnetometer(Model):
         field: Vector | None = None,
         *,
         field_strength: float | None = None,
-        mounting: Vector | Literal["estimate"] | None = None,
+        mounting: Sequence[float] | Literal["estimate"] | None = None,
     ) -> None:
         if field is not None and field_strength is not None:
             raise _core.Error("field and field_strength contradict each other; give one")
@@ -316,9 +318,7 @@ class Magnetometer(Model):
         self.field = None if field is None else _to_vector("field", field, strength_alone)
         self.field_strength = None if field_strength is None else float(field_strength)
         self.mounting = (
-            mounting
-            if mounting is None or isinstance(mounting, str)
-            else _to_vector("mounting", mounting, ': roll, pitch, yaw [deg], or "estimate"')
+            mounting if mounting is None or isinstance(mounting, str) else _to_turn(mounting)
         )
         self.name = "magnetometer" if self.field_strength is None else "magnetometer-norm"
         turned = () if self.mounting == "estimate" else self.mounting
@@ -339,6 +339,15 @@ class Magnetometer(Model):
             return {"field_strength": self.field_strength}
         given = {"field": self.field, "mounting": self.mounting}
         return {name: value for name, value in given.items() if value is not None}
+
+
+def _to_turn(mounting: Sequence[float]) -> tuple[float, float, float]:
+    """Roll, pitch, yaw [deg], of these or of a quaternion."""
+    quaternion_parts = 4
+    if len(mounting) == quaternion_parts:
+        roll, pitch, yaw = _core.angles_of_quaternion([float(part) for part in mounting])
+        return roll, pitch, yaw
+    return _to_vector("mounting", mounting, ': roll, pitch, yaw [deg], or "estimate"')
 
 
 def _to_vector(name: str, values: Vector, otherwise: str = "") -> tuple[float, float, float]:

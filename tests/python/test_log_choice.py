@@ -359,7 +359,7 @@ def test_climb_is_read_as_velocity_down(tube: Bench) -> None:
     (tube.folder / "climb.csv").write_text(text)
     read = tube.fit("--map", "vu_fpm=climb rate", "-o", "climb.json", flight="climb.csv")
     assert read.code == 0, read.err
-    assert "vd is vu_fpm turned downwards" in read.err
+    assert "vd is climb rate turned downwards" in read.err
     assert values_of(read.result) == pytest.approx(values_of(clean.result), rel=1e-6, abs=1e-6)
 
 

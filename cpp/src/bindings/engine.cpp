@@ -14,6 +14,7 @@
 #include "base/name_list.hpp"
 #include "base/sentences.hpp"
 #include "bindings.hpp"
+#include "flight/probes/mounting.hpp"
 #include "flight/verbs/held_options.hpp"
 #include "python_effect.hpp"
 #include "python_model.hpp"
@@ -229,6 +230,7 @@ void define_engine(py::module_& module) {
             std::shared_ptr<const Probe>(attitude_independent_probe(field_strength, noise)));
       },
       "field_strength"_a, "noise"_a = 0.0);
+  module.def("angles_of_quaternion", &probes::angles_of_quaternion, "quaternion"_a);
   // `mounting`: none, a sensor in body axes; empty, to be found in the flight; or three angles.
   module.def("magnetometer", [](const std::optional<Vector>& field,
                                 const std::optional<std::vector<double>>& mounting) {

@@ -87,8 +87,15 @@ std::vector<std::string> labels_of(const Record& record) {
 
 void need_channel(const EffectName& name, const std::string& channel, const Record& record) {
   if (record.has(channel)) return;
-  throw Error("effect " + name.text + ": there is no channel '" + channel +
-              "'; the record has: " + base::list_names(record.names()));
+  const std::vector<std::string> names = record.names();
+  const auto begins = [&](const std::string& known) { return known.starts_with(channel + "_"); };
+  const auto with_unit = std::ranges::find_if(names, begins);
+  const std::string similar = with_unit != names.end()
+                                  ? "; did you mean '" + *with_unit + "'?"
+                                  : base::ask_for_similar(channel, names, channel.size() / 3);
+  throw Error("effect " + name.text + ": there is no channel '" + channel + "'" +
+              (similar.empty() ? "; the" : similar + " The") +
+              " record has: " + base::list_names(names));
 }
 
 /// The product as a column of its own.

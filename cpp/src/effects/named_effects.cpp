@@ -24,7 +24,8 @@ std::vector<std::string> known_names(const EffectKit& kit, const std::string& dr
 
 std::string describe_unknown(const std::string& name, const EffectKit& kit) {
   const std::size_t bracket = std::min(name.find('['), name.size());
-  const std::size_t slips = bracket / 4;  // in a short name a letter makes another
+  constexpr std::size_t shortest = 3;  // in a shorter name a letter makes another
+  const std::size_t slips = bracket < shortest ? 0 : std::max<std::size_t>(1, bracket / 4);
   const std::string similar =
       base::ask_for_similar(name, known_names(kit, name.substr(bracket)), slips);
   return "there is no effect '" + name + "'" +

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "base/name_list.hpp"
 #include "base/thread_pool.hpp"
@@ -16,8 +18,12 @@ const Variable& find(const std::vector<Variable>& variables, const std::string& 
                      const std::string& what) {
   const auto at = std::ranges::find(variables, name, &Variable::name);
   if (at == variables.end()) {
-    throw Error("there is no " + what + " '" + name +
-                "'; the model has: " + base::list_names(variables));
+    std::vector<std::string> names;
+    for (const Variable& variable : variables) names.push_back(variable.name);
+    const std::string similar = base::ask_for_similar(name, names, name.size() / 2);
+    throw Error("there is no " + what + " '" + name + "'" +
+                (similar.empty() ? "; the" : similar + " The") +
+                " model has: " + base::list_names(variables));
   }
   return *at;
 }

@@ -41,6 +41,10 @@ struct ChoiceNames<Concern> {
   static constexpr std::array<std::string_view, 3> names{"wrong", "matters", "slight"};
 };
 
+/// What a note predicts of a fit, which the fit may refute: a scale far off, a parameter at its
+/// bound.
+enum class Predicted { nothing, scale, bound };
+
 /// Something about a log: what it is, what it does to the result, what to do.
 struct LogNote {
   std::string kind;  // "held", "units", ...: results.md lists them
@@ -52,6 +56,7 @@ struct LogNote {
   std::string found = {};
   std::string effect = {};
   std::string advice = {};
+  Predicted predicts = Predicted::nothing;
 };
 
 struct FlightCheck {

@@ -8,10 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <numbers>
 
+#include "base/escaping.hpp"
 #include "flight/checks/axes.hpp"
 #include "flight/checks/excitation.hpp"
+#include "flight/checks/flow_angles.hpp"
 #include "flight/checks/suspect_rows.hpp"
 #include "flight/probes/plausible_readings.hpp"
 
@@ -20,28 +24,56 @@ namespace {
 
 using Eigen::Matrix3Xd;
 using files::Unit;
+using files::UnitKind;
 
 /// What two measures of one quantity may differ by: a wind of a third of the airspeed, say.
 constexpr double least_ratio = 0.6;
 constexpr double largest_ratio = 1.6;
 
 /// The unit in which the readings would be nearest to what they are held against, where one brings
-/// them within a quarter; nothing else. `ratio`: theirs, in the unit of their header.
+/// them within a quarter; nothing else. `ratio`: theirs, in the unit of their header. A sensor that
+/// is off by some per cent makes miles of knots and feet of kilometres: units of which logs are
+/// seldom count for farther.
 const Unit* guess_unit(const Unit& header, double ratio) {
+  constexpr double seldom = 0.12;
   const Unit* nearest = nullptr;
-  double least = std::log(1.25);
+  double least = std::numeric_limits<double>::infinity();
   for (const Unit& unit : files::known_units(header.kind)) {
     const double error = std::abs(std::log(ratio * unit.convert(1.0) / header.convert(1.0)));
-    if (&unit == &header || error > least) continue;
+    if (&unit == &header || error > std::log(1.25)) continue;
+    const double cost = error + (unit.suffix == "mph" || unit.suffix == "ftps" ? seldom : 0.0);
+    if (cost > least) continue;
     nearest = &unit;
-    least = error;
+    least = cost;
   }
   return nearest;
 }
 
-/// "vn_kt" for vn_mps.
-std::string renamed(const std::string& header, const Unit& unit) {
-  return header.substr(0, header.rfind('_') + 1) + std::string(unit.suffix);
+/// "--map vn_kt=vn_mps,ve_kt=ve_mps": the columns read in another unit.
+std::string map_in_unit(std::initializer_list<const LoggedColumn*> columns, const Unit& unit) {
+  std::vector<std::string> pairs;
+  for (const LoggedColumn* column : columns) {
+    if (column == nullptr) continue;
+    pairs.push_back(fmt::format("{}_{}={}", column->name(), unit.suffix, column->log_header()));
+  }
+  return "--map " + base::in_shell(fmt::format("{}", fmt::join(pairs, ",")));
+}
+
+/// "--map vn_mps=ve_mps,ve_mps=-vn_mps" of axes "ve, -vn" in the place of these.
+std::string map_axes(const Log& log, std::initializer_list<std::string_view> quantities,
+                     std::string_view axes) {
+  std::vector<std::string> pairs;
+  for (const std::string_view quantity : quantities) {
+    std::string_view axis = axes.substr(0, axes.find(", "));
+    axes.remove_prefix(std::min(axes.size(), axis.size() + 2));
+    const bool turned = axis.starts_with('-');
+    if (turned) axis.remove_prefix(1);
+    if (axis == quantity && !turned) continue;
+    const LoggedColumn& from = *log.find(axis);
+    pairs.push_back(fmt::format("{}_{}={}{}", quantity, from.logged.unit->suffix, turned ? "-" : "",
+                                from.log_header()));
+  }
+  return "--map " + base::in_shell(fmt::format("{}", fmt::join(pairs, ",")));
 }
 
 /// The airspeed in units of the speed through the air that the tracks over the ground tell,
@@ -89,8 +121,9 @@ void note_speeds(const Log& log, std::vector<LogNote>& notes) {
   if (is_likely(in_wind)) return;
   const LoggedColumn* read = log.find("airspeed");
   const LoggedColumn* north = log.find("vn");
-  const Unit* reads = read == nullptr ? nullptr : guess_unit(*read->logged.unit, ratio);
-  const Unit* moves = guess_unit(*north->logged.unit, 1 / ratio);
+  const double held = std::isnan(in_wind) ? ratio : in_wind;
+  const Unit* reads = read == nullptr ? nullptr : guess_unit(*read->logged.unit, held);
+  const Unit* moves = guess_unit(*north->logged.unit, 1 / held);
   std::vector<std::string> columns = airspeed->headers;
   columns.push_back(north->header());
   columns.push_back(log.find("ve")->header());
@@ -99,20 +132,22 @@ void note_speeds(const Log& log, std::vector<LogNote>& notes) {
       fmt::format("{} is usually {:.3g} times the speed over the ground",
                   read != nullptr ? read->header() : "the airspeed of the pressures", ratio);
   note.effect = fmt::format("the scale of the airspeed comes out {:.2g} times what it is", ratio);
+  note.predicts = Predicted::scale;
   std::vector<std::string> renamings;
   std::vector<std::string> slips;
   for (const auto& [column, unit] : {std::pair(read, reads), std::pair(north, moves)}) {
     if (unit == nullptr) continue;
     slips.push_back(fmt::format("{} under the header {}", unit->suffix, column->header()));
-    renamings.push_back(fmt::format("rename {} to {}{}", column->header(),
-                                    renamed(column->header(), *unit),
-                                    column == north ? " and so on" : ""));
+    renamings.push_back(fmt::format(
+        "{} reads it so", column == north
+                              ? map_in_unit({north, log.find("ve"), log.find("vd")}, *unit)
+                              : map_in_unit({column}, *unit)));
   }
   if (slips.empty()) {
     note.advice = "check the units of both; a wind alone would have to be strong";
   } else {
     note.found += fmt::format(": as {} would be", fmt::join(slips, ", or "));
-    note.advice = fmt::format("check the unit: {}", fmt::join(renamings, ", or "));
+    note.advice = fmt::format("if so, {}", fmt::join(renamings, ", or "));
   }
   notes.push_back(std::move(note));
 }
@@ -158,10 +193,13 @@ void note_strength(const Log& log, const FieldRows& field, std::vector<LogNote>&
         fmt::format(": as {} under the header {} would be", unit->suffix, field.headers.front());
   }
   note.effect = fmt::format("scale errors come out near {:.2g}, or at their bounds", ratio - 1);
-  note.advice = unit != nullptr ? fmt::format("check the unit: rename them to {} and so on",
-                                              renamed(field.headers.front(), *unit))
-                                : "check the unit of the readings; the true field is to be given "
-                                  "in uT, not in nT or gauss";
+  note.predicts = Predicted::scale;
+  note.advice =
+      unit != nullptr
+          ? fmt::format("if so, {} reads them so",
+                        map_in_unit({log.find("mx"), log.find("my"), log.find("mz")}, *unit))
+          : "check the unit of the readings; the true field is to be given "
+            "in uT, not in nT or gauss";
   notes.push_back(std::move(note));
 }
 
@@ -173,9 +211,10 @@ void note_field_axes(const Log& log, const FieldRows& field, std::vector<LogNote
       "{} follow the true field as ({}): correlation {:.2f} against {:.2f} as they stand",
       list_headers(field.headers), better->axes, better->agreement, better->agreement_as_logged);
   note.effect = "no misalignment turns axes that far: they end at their bounds";
-  note.advice =
-      "swap the columns or their signs in the log so, or give how the sensor is mounted; "
-      "or check the attitude's signs";
+  note.predicts = Predicted::bound;
+  note.advice = fmt::format(
+      "{} reads them so; or give how the sensor is mounted, or check the attitude's signs",
+      map_axes(log, {"mx", "my", "mz"}, better->axes));
   notes.push_back(std::move(note));
 }
 
@@ -201,8 +240,23 @@ void note_track_axes(const Log& log, std::vector<LogNote>& notes) {
   } else {
     note.found += fmt::format("; with {} in the place of vn, ve it would ({:.2f})", better->axes,
                               better->agreement);
-    note.advice = "swap the columns or their signs in the log so; or check the sense of the yaw";
+    note.advice = fmt::format("{} reads them so; or check the sense of the yaw",
+                              map_axes(log, {"vn", "ve"}, better->axes));
   }
+  notes.push_back(std::move(note));
+}
+
+/// A heading in degrees that turns over at 2 pi is in radians.
+void note_heading_unit(const Log& log, std::vector<LogNote>& notes) {
+  const LoggedColumn* yaw = log.find("yaw");
+  if (yaw == nullptr || yaw->logged.unit->is_inside()) return;
+  if (!files::turns_over_in_radians(yaw->logged.column->values)) return;
+  LogNote note = note_on(log, "units", Concern::wrong, {yaw->header()});
+  note.found =
+      fmt::format("{} stays within a turn of 6.28, as an angle in radians does", yaw->header());
+  note.effect = "the attitude hardly turns";
+  note.advice = fmt::format("if so, {} reads it so",
+                            map_in_unit({yaw}, *files::find_unit(UnitKind::angle, "rad")));
   notes.push_back(std::move(note));
 }
 
@@ -214,13 +268,13 @@ void note_implausible(const Log& log, const Settings& settings, std::vector<LogN
     probes::Reading reading{column->header(), std::nullopt, {}};
     if (column->logged.unit->is_inside()) reading.relabel = column->kind();
     reading.values = column->logged.values();
+    reading.logged = column->logged.column->logged;
     const auto bad = [](double value) { return !std::isfinite(value); };
     if (std::ranges::any_of(reading.values, bad)) return std::nullopt;
     return reading;
   };
   const auto set = settings.find("field_strength");
-  const auto strength =
-      set == settings.end() ? std::nullopt : std::optional(set->second.front());
+  const auto strength = set == settings.end() ? std::nullopt : std::optional(set->second.front());
   for (const probes::Implausible& found : probes::find_implausible(find, strength)) {
     const bool said = std::ranges::any_of(notes, [&](const LogNote& note) {
       return note.kind == "units" && std::ranges::any_of(found.headers, [&](const auto& header) {
@@ -242,6 +296,8 @@ void note_implausible(const Log& log, const Settings& settings, std::vector<LogN
 void check_across(const Log& log, const Settings& settings, std::vector<LogNote>& notes) {
   note_speeds(log, notes);
   note_track_axes(log, notes);
+  note_heading_unit(log, notes);
+  check_flow_angles(log, settings, notes);
   if (const auto field = find_field(log, settings)) {
     note_strength(log, *field, notes);
     note_field_axes(log, *field, notes);

@@ -29,6 +29,8 @@ struct LoggedColumn {
   bool used() const { return !quantity->is_extra && quantity->taken != probes::Taken::never; }
 
   const std::string& header() const { return logged.column->header; }
+  /// As the log has it, which an option may name.
+  const std::string& log_header() const { return logged.column->logged_header(); }
   files::UnitKind kind() const { return logged.unit->kind; }
 };
 

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -141,17 +144,15 @@ std::vector<double> LoggedQuantity::values() const {
   return values;
 }
 
-const Unit* unit_of(const Flight::Column& column, std::string_view quantity, UnitKind kind,
-                    const Unit* bare) {
-  const Unit* unit = unit_in(column.header, quantity, kind, bare);
-  return unit != nullptr || column.logged.empty() ? unit
-                                                  : unit_in(column.logged, quantity, kind, bare);
-}
-
 std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_view quantity,
                                             UnitKind kind, const Unit* bare) {
   for (const Flight::Column& column : flight.columns()) {
-    const Unit* unit = unit_of(column, quantity, kind, bare);
+    const Unit* unit = unit_in(column.header, quantity, kind, bare);
+    if (unit != nullptr) return LoggedQuantity{&column, unit};
+  }
+  if (bare == nullptr) return std::nullopt;
+  for (const Flight::Column& column : flight.columns()) {  // a name of somebody's own
+    const Unit* unit = unit_in(column.logged, quantity, kind, bare);
     if (unit != nullptr) return LoggedQuantity{&column, unit};
   }
   return std::nullopt;
@@ -160,6 +161,26 @@ std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_vi
 std::vector<double> read_quantity(const Flight& flight, std::string_view quantity, UnitKind kind) {
   const auto logged = find_quantity(flight, quantity, kind);
   return logged ? logged->values() : std::vector<double>();
+}
+
+bool turns_over_in_radians(std::span<const double> degrees) {
+  constexpr double turn = 2.0 * std::numbers::pi;
+  constexpr double least_jump = 0.8 * turn;
+  constexpr double all_round = 0.95 * turn;
+  double least = std::numeric_limits<double>::infinity();
+  double largest = -least;
+  bool jumps = false;
+  double before = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : degrees) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    largest = std::max(largest, value);
+    jumps = jumps || std::abs(value - before) > least_jump;
+    before = value;
+  }
+  const bool within =
+      largest - least <= 1.001 * turn && largest <= 1.001 * turn && least >= -0.501 * turn;
+  return within && (jumps || largest - least > all_round);
 }
 
 std::string map_pair(std::string_view accepted, std::string_view header) {

@@ -25,10 +25,6 @@ inline constexpr const char* flight_number = "flight number";
 const Unit* unit_in(std::string_view header, std::string_view quantity, UnitKind kind,
                     const Unit* bare = nullptr);
 
-/// The same of a column by its header, or else by the log's own one.
-const Unit* unit_of(const Flight::Column& column, std::string_view quantity, UnitKind kind,
-                    const Unit* bare = nullptr);
-
 /// Every header that `quantity` is read from, the unit used inside first: roll_rad, roll_deg; the
 /// name alone, where `bare` is its unit, last.
 std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind,
@@ -46,12 +42,17 @@ struct LoggedQuantity {
   std::vector<double> values() const;
 };
 
-/// The flight's first column under one of these headers; nothing where there is none.
+/// The flight's first column under one of these headers, or, of a quantity that may be named alone,
+/// that the log has under one; nothing where there is none.
 std::optional<LoggedQuantity> find_quantity(const Flight& flight, std::string_view quantity,
                                             UnitKind kind, const Unit* bare = nullptr);
 
 /// Its values(); empty where there is none.
 std::vector<double> read_quantity(const Flight& flight, std::string_view quantity, UnitKind kind);
+
+/// Whether angles under a header in degrees are in radians: within a turn of 2 pi, and jumping by
+/// one from row to row, or all round it.
+bool turns_over_in_radians(std::span<const double> degrees);
 
 /// "roll_deg='Roll, left [deg]'", as the option map takes it.
 std::string map_pair(std::string_view accepted, std::string_view header);

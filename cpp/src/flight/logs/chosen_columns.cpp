@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/name_list.hpp"
 #include "base/spool.hpp"
 #include "flight/files/headers.hpp"
 #include "flight/files/known_names.hpp"
@@ -90,7 +91,9 @@ struct Axis {
 };
 
 constexpr std::array<std::array<std::string_view, 3>, 4> vectors{
-    std::array<std::string_view, 3>{"mx", "my", "mz"}, {"hx", "hy", "hz"}, {"p", "q", "r"},
+    std::array<std::string_view, 3>{"mx", "my", "mz"},
+    {"hx", "hy", "hz"},
+    {"p", "q", "r"},
     {"ax", "ay", "az"}};
 constexpr std::array vector_kinds{files::UnitKind::field, files::UnitKind::field,
                                   files::UnitKind::rate, files::UnitKind::acceleration};
@@ -133,10 +136,34 @@ void note_mirrors(const Flight& flight, const std::vector<Change>& changes,
   }
 }
 
+/// A new name that nothing reads and that is a letter away from one that something does.
+void note_slips(const Flight& flight, const std::vector<Change>& changes,
+                std::vector<std::string>& notes) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (const Change& change : changes) {
+    if (std::ranges::any_of(change.header, is_digit)) continue;
+    std::string near;
+    bool is_known = false;
+    for (const files::KnownQuantity& quantity : files::known_quantities()) {
+      for (const std::string& header : files::accepted_headers(quantity.name, quantity.kind)) {
+        const std::size_t slips = base::count_slips(change.header, header);
+        is_known = is_known || slips == 0 || files::recognise(change.header, quantity);
+        if (slips == 1 && near.empty()) near = header;
+      }
+    }
+    if (is_known || near.empty()) continue;
+    notes.push_back(
+        fmt::format("{}: map {}={} reads the column as a channel of that name and as no "
+                    "quantity; did you mean {}?",
+                    flight.name(), change.header, change.from.header, near));
+  }
+}
+
 void rename_columns(Flight& flight, const LogChoice& choice, std::vector<std::string>& notes) {
   const std::vector<Change> changes = changes_of(flight, choice);
   check_free(flight, changes);
   note_mirrors(flight, changes, notes);
+  note_slips(flight, changes, notes);
   const auto between = [](std::size_t i) { return fmt::format("mapped column {}", i); };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     flight.rename(changes[i].from.header, between(i));

@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "flight/files/headers.hpp"
@@ -78,6 +79,28 @@ std::optional<Agreement> compare_with_positions(const Flight& flight,
                    sum.turned / static_cast<double>(count)};
 }
 
+/// A track that goes beyond a turn of its unit, or turns over within it as radians do.
+void note_unit(const Flight& flight, const LoggedQuantity& track, std::vector<std::string>& notes) {
+  const std::span<const double> values = track.column->values;
+  const std::string& header = track.column->logged_header();
+  const std::string name = track.column->header.substr(0, track.column->header.rfind('_'));
+  if (!track.unit->is_inside()) {
+    if (!files::turns_over_in_radians(values)) return;
+    notes.push_back(fmt::format(
+        "{}: {} turns over at 6.28, as an angle in radians does: if so, --map {} reads it so",
+        flight.name(), header, files::map_pair(name + "_rad", header)));
+    return;
+  }
+  constexpr double turn = 6.3;
+  const auto largest = std::ranges::max_element(
+      values, {}, [](double value) { return std::isfinite(value) ? std::abs(value) : 0.0; });
+  if (largest == values.end() || !(std::abs(*largest) > 2.0 * turn)) return;
+  notes.push_back(fmt::format(
+      "{}: {} goes to {:.4g}, beyond a turn, as an angle in degrees does: if so, --map {} reads it "
+      "so",
+      flight.name(), header, *largest, files::map_pair(name + "_deg", header)));
+}
+
 /// Whether a track that does not say so is magnetic: where the positions go tells, or else a maker
 /// whose track is.
 bool is_magnetic(const Flight& flight, const LoggedQuantity& track,
@@ -123,6 +146,7 @@ void derive_from_track(Flight& flight, std::vector<std::string>& notes) {
                     flight.name(), track->column->logged_header()));
     return;
   }
+  note_unit(flight, *track, notes);
   constexpr double standstill = 1.0;  // m/s
   std::vector<double> north;
   std::vector<double> east;
@@ -133,11 +157,11 @@ void derive_from_track(Flight& flight, std::vector<std::string>& notes) {
     north.push_back(moves * std::cos(angle));
     east.push_back(moves * std::sin(angle));
   }
-  notes.push_back(fmt::format("{}: vn and ve are from {} and {}{}", flight.name(),
-                              speed->column->logged_header(), track->column->logged_header(),
-                              magnetic ? fmt::format(", turned to true north by {}",
-                                                     magvar->column->logged_header())
-                                       : ", taken from true north"));
+  notes.push_back(fmt::format(
+      "{}: vn and ve are from {} and {}{}", flight.name(), speed->column->logged_header(),
+      track->column->logged_header(),
+      magnetic ? fmt::format(", turned to true north by {}", magvar->column->logged_header())
+               : ", taken from true north"));
   add_with_holes(flight, "vn_mps", std::move(north), "no speed or track");
   add_with_holes(flight, "ve_mps", std::move(east), "no speed or track");
 }
@@ -146,8 +170,8 @@ void derive_climb(Flight& flight, std::vector<std::string>& notes) {
   if (flight.is_mapped() || has_speed(flight, "vd")) return;
   if (!has_speed(flight, "vn") || !has_speed(flight, "ve")) return;
   if (smooth_climb(flight, notes)) return;
-  const bool of_track = has_speed(flight, "gs") &&
-                        (find_angle(flight, "track") || find_angle(flight, "mag_track"));
+  const bool of_track =
+      has_speed(flight, "gs") && (find_angle(flight, "track") || find_angle(flight, "mag_track"));
   if (!of_track) return;
   notes.push_back(
       fmt::format("{}: neither a vertical speed nor an altitude is logged: flight is taken for "

@@ -228,8 +228,7 @@ bool smooth_climb(Flight& flight, std::vector<std::string>& notes) {
   const auto parts_of = [&](const std::vector<std::size_t>& rows) {
     return find_parts(intervals_of(at_fixes(time, rows)));
   };
-  const bool is_held =
-      changes.size() >= fewest && parts_of(changes).size() <= parts_of(all).size();
+  const bool is_held = changes.size() >= fewest && parts_of(changes).size() <= parts_of(all).size();
   const std::vector<std::size_t>& fixes = is_held ? changes : all;
   const std::vector<double> fixed = offsets(at_fixes(time, fixes), 1.0);
   const std::vector<double> intervals = intervals_of(fixed);

@@ -100,7 +100,9 @@ Angles angles_of_quaternion(const std::array<double, 4>& quaternion) {
         "{:.3g}; give three numbers for angles in degrees",
         w, x, y, z, length));
   }
-  return angles_of(Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix());
+  Angles angles = angles_of(Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix());
+  for (double& angle : angles) angle += 0.0;  // -0 is 0
+  return angles;
 }
 
 Angles angles_of(const Matrix3d& R) {

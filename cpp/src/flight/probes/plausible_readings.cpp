@@ -2,11 +2,14 @@
 #include "flight/probes/plausible_readings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
+#include "base/escaping.hpp"
 #include "flight/probes/ellipsoid.hpp"
 #include "numerics/order_statistics.hpp"
 
@@ -42,20 +45,28 @@ constexpr Field true_field_in_body{"hx", "hy", "hz"};
 constexpr Field true_field_in_navigation{"bn", "be", "bd"};
 constexpr Field read_field{"mx", "my", "mz"};
 
-/// "; if it is in hpa or torr, ...": the units of its kind that would put both values in the range.
-std::string suggest_units(const Reading& reading, const Range& range, double smallest,
+/// "; if it is in hpa or torr, --map ps_hpa=ps_pa reads it so": the units of its kind that would
+/// put both values in the range.
+std::string suggest_units(std::span<const Reading> readings, const Range& range, double smallest,
                           double largest) {
-  std::string units;
-  if (reading.relabel) {
-    for (const files::Unit& unit : files::known_units(*reading.relabel)) {
-      if (!range.contains(unit.convert(smallest)) || !range.contains(unit.convert(largest))) {
-        continue;
+  std::vector<std::string_view> units;
+  if (readings.front().relabel) {
+    for (const files::Unit& unit : files::known_units(*readings.front().relabel)) {
+      if (range.contains(unit.convert(smallest)) && range.contains(unit.convert(largest))) {
+        units.push_back(unit.suffix);
       }
-      units += fmt::format("{}{}", units.empty() ? "" : " or ", unit.suffix);
     }
   }
   if (units.empty()) return "; check its unit";
-  return fmt::format("; if it is in {}, its header should say so", units);
+  std::vector<std::string> pairs;
+  for (const Reading& reading : readings) {
+    pairs.push_back(fmt::format("{}_{}={}", reading.header.substr(0, reading.header.rfind('_')),
+                                units.front(),
+                                reading.logged.empty() ? reading.header : reading.logged));
+  }
+  return fmt::format("; if it is in {}, --map {} reads it so{}", fmt::join(units, " or "),
+                     base::in_shell(fmt::format("{}", fmt::join(pairs, ","))),
+                     units.size() > 1 ? fmt::format(" for {}", units.front()) : "");
 }
 
 void check_range(const QuantityRange& entry, const FindReading& find,
@@ -74,7 +85,7 @@ void check_range(const QuantityRange& entry, const FindReading& find,
                    "to {:.4g}){}",
                    reading->header, entry.range.low, entry.range.high, entry.unit, outside,
                    reading->values.size(), smallest, largest,
-                   suggest_units(*reading, entry.range, smallest, largest))});
+                   suggest_units({&*reading, 1}, entry.range, smallest, largest))});
 }
 
 /// Of the ellipsoid that the readings lie on all round, which hard iron does not touch; NaN where
@@ -115,7 +126,7 @@ bool check_field(const Field& names, const Range& range, const FindReading& find
       {std::move(headers),
        fmt::format("the field {} {:.4g} uT strong, which lies outside {:g} to {:g} uT{}", whose,
                    strength, range.low, range.high,
-                   suggest_units(field[0], range, strength, strength))});
+                   suggest_units(field, range, strength, strength))});
   return true;
 }
 

@@ -19,6 +19,7 @@ struct Reading {
   /// Where logged in the unit used inside, which may be a slip.
   std::optional<files::UnitKind> relabel;
   std::vector<double> values;  // in the unit used inside
+  std::string logged = {};     // the log's own header, where it is another
 };
 
 /// Looks a quantity up by its base name ("yaw"); nothing where it is not in use.
@@ -34,7 +35,7 @@ struct Implausible {
 /// temperature outside 150 to 400 K, a density outside 0.02 to 2 kg/m^3, a static pressure outside
 /// 5 to 120 kPa, a dynamic pressure outside 1 Pa to 50 kPa, flow-angle pressures out of proportion
 /// to it, a field outside 5 to 200 uT (read: 400 uT).
-std::vector<Implausible> find_implausible(
-    const FindReading& find, std::optional<double> field_strength = std::nullopt);
+std::vector<Implausible> find_implausible(const FindReading& find,
+                                          std::optional<double> field_strength = std::nullopt);
 
 }  // namespace sepcal::probes

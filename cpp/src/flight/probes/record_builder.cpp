@@ -84,7 +84,7 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
   const Flight::Column* unknown = nullptr;
   for (const Flight::Column& column : flight_.columns()) {
     const std::string_view header = column.header;
-    const files::Unit* unit = files::unit_of(column, quantity.name, quantity.kind, quantity.bare);
+    const files::Unit* unit = files::unit_in(header, quantity.name, quantity.kind, quantity.bare);
     if (unit == nullptr) {
       const std::string_view name = header.substr(0, header.rfind('_'));
       if (quantity.bare == nullptr && name == quantity.name) unknown = &column;
@@ -96,6 +96,10 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
     } else {
       found = {&column, unit};
     }
+  }
+  if (found.column == nullptr) {
+    const auto own = files::find_quantity(flight_, quantity.name, quantity.kind, quantity.bare);
+    if (own) found = *own;
   }
   if (found.column != nullptr) logged_.emplace(quantity.name, found);
   if (unknown == nullptr || unknown->header == quantity.name) return;  // take_drivers() says so
@@ -154,12 +158,13 @@ OptionError::Message RecordBuilder::ask_for_near_miss(Names names) const {
 
 OptionError::Message RecordBuilder::say_unknown(std::string_view name) const {
   const ProbeQuantity& quantity = quantity_of(name);
-  const std::string& header = unknown_.at(name)->logged_header();
+  const Flight::Column& column = *unknown_.at(name);
   const auto accepted = files::accepted_headers(name, quantity.kind, quantity.bare);
-  return {fmt::format("column '{}' has no known unit; {} may be logged as: {}; ", header, name,
-                      fmt::join(accepted, ", ")),
+  return {fmt::format("column '{}' has no known unit; {} may be logged as: {}; ", column.header,
+                      name, fmt::join(accepted, ", ")),
           Option{"map"},
-          fmt::format(" {} reads it as the first", files::map_pair(accepted.front(), header))};
+          fmt::format(" {} reads it as the first",
+                      files::map_pair(accepted.front(), column.logged_header()))};
 }
 
 void RecordBuilder::fail_missing(std::span<const std::string_view> names) const {
@@ -349,6 +354,7 @@ std::optional<Reading> RecordBuilder::find_reading(std::string_view name) const 
   if (!is_taken && std::ranges::find(checked_, name) == checked_.end()) return std::nullopt;
   const LoggedQuantity& quantity = logged(name);
   reading.header = quantity.column->header;
+  reading.logged = quantity.column->logged;
   if (quantity.unit->is_inside()) reading.relabel = quantity.unit->kind;
   read([&](std::size_t row) { return quantity.at(row); });
   return reading;

@@ -182,9 +182,32 @@ bool is_followed(const LogNote& note, const CalibrationOptions& options, const F
   return note.kind == "interpolated" && std::ranges::any_of(note.columns, is_chosen);
 }
 
-/// Adds what check() says that is worth a word before a fit.
+/// Whether the fit does not have what a note of the check predicts.
+bool is_refuted(const LogNote& note, const Fit& fit) {
+  constexpr double gross = 0.35;
+  if (note.predicts == Predicted::nothing || fit.status != FitStatus::converged) return false;
+  return std::ranges::none_of(fit.parameters, [&](const Parameter& parameter) {
+    if (parameter.at_bound) return true;
+    const bool is_scale = parameter.name == "s_va";
+    const bool is_error = parameter.name.starts_with("lambda_");
+    return note.predicts == Predicted::scale && (is_scale || is_error) &&
+           std::abs(parameter.value - (is_scale ? 1.0 : 0.0)) > gross;
+  });
+}
+
+/// Whether the readings' notes name the same mend already.
+bool is_said(const LogNote& note, const std::vector<std::string>& notes) {
+  const std::size_t first = note.advice.find("--map ");
+  if (first == std::string::npos) return false;
+  const std::string option = note.advice.substr(first, note.advice.find(" reads") - first);
+  return std::ranges::any_of(
+      notes, [&](const std::string& said) { return said.find(option) != std::string::npos; });
+}
+
+/// Adds what check() says that is worth a word, and that the fit does not refute.
 void note_check(const Probe& probe, const PreparedFlight& prepared,
-                const CalibrationOptions& options, std::vector<std::string>& notes) {
+                const CalibrationOptions& options, const Fit& fit,
+                std::vector<std::string>& notes) {
   const Flight& flight = prepared.logged;
   if (flight.is_mapped() && flight.rows() > base::excerpt_rows) {
     notes.push_back(fmt::format(
@@ -198,7 +221,8 @@ void note_check(const Probe& probe, const PreparedFlight& prepared,
                             .from_time = options.log.from_time,
                             .to_time = options.log.to_time});
   std::erase_if(seen.notes, [&](const LogNote& note) {
-    return is_followed(note, options, flight, prepared.readings.flight_rows);
+    return is_refuted(note, fit) || is_said(note, prepared.readings.notes) ||
+           is_followed(note, options, flight, prepared.readings.flight_rows);
   });
   std::ranges::move(brief_notes(seen), std::back_inserter(notes));
 }
@@ -341,9 +365,9 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
     probe = std::move(settled);
   }
   const PreparedFlight prepared = prepare(*probe, flight, options.log);
-  std::vector<std::string> notes;
-  note_check(*probe, prepared, options, notes);
   Calibration calibration = calibrate(probe, prepared, options);
+  std::vector<std::string> notes;
+  note_check(*probe, prepared, options, calibration.fit, notes);
   std::ranges::copy(prepared.filled, std::back_inserter(calibration.notes));
   std::ranges::move(notes, std::back_inserter(calibration.notes));
   note_pull(calibration, prepared, options);

@@ -108,6 +108,144 @@ TEST_CASE("an option may name a column as the log does, though it is read otherw
         std::vector<double>{1, 2});
 }
 
+TEST_CASE("two columns may change places, and a minus turns the sign") {
+  Flight log("log");
+  log.add("vn_mps", {1, 2}).add("ve_mps", {3, 4}).add("dpb_pa", {5, 6}).add("Mag Y [uT]", {7, 8});
+  const ReadFlight read = read_as(log, {.map = {{"vn_mps", "ve_mps"},
+                                                {"ve_mps", "vn_mps"},
+                                                {"dpb_pa", "-dpb_pa"},
+                                                {"mx_ut", "-Mag Y [uT]"}}});
+  CHECK(values(read.flight, "vn_mps") == std::vector<double>{3, 4});
+  CHECK(values(read.flight, "ve_mps") == std::vector<double>{1, 2});
+  CHECK(values(read.flight, "dpb_pa") == std::vector<double>{-5, -6});
+  CHECK(values(read.flight, "mx_ut") == std::vector<double>{-7, -8});
+  CHECK(read.flight.find("Mag Y [uT]") == read.flight.find("mx_ut"));
+  CHECK(values(log, "dpb_pa") == std::vector<double>{5, 6});  // stays as it was
+}
+
+TEST_CASE("a map that mirrors a sensor's axes is noted, and one that turns them is not") {
+  Flight log("log");
+  log.add("mx_ut", {1}).add("my_ut", {2}).add("mz_ut", {3});
+  const auto notes = [&](std::map<std::string, std::string> map) {
+    return read_as(log, {.map = std::move(map)}).notes;
+  };
+  CHECK(notes({{"mx_ut", "-my_ut"}, {"my_ut", "mx_ut"}}).empty());
+  CHECK(notes({{"mx_ut", "my_ut"}, {"my_ut", "mz_ut"}, {"mz_ut", "mx_ut"}}).empty());
+  for (const auto& mirrors : {std::map<std::string, std::string>{{"mz_ut", "-mz_ut"}},
+                              {{"mx_ut", "my_ut"}, {"my_ut", "mx_ut"}}}) {
+    CHECK(notes(mirrors) ==
+          std::vector<std::string>{"log: map mirrors mx, my, mz: right for a sensor whose axes are "
+                                   "a left-handed set, and no rotation"});
+  }
+}
+
+TEST_CASE("a new name that is a letter away from one that is read is pointed out") {
+  Flight log("log");
+  log.add("TAS", {40, 41}).add("Thr", {0.4, 0.5});
+  const ReadFlight read =
+      read_as(log, {.map = {{"airsped_kt", "TAS"}, {"throttle_position", "Thr"}}});
+  CHECK(read.notes == std::vector<std::string>{
+                          "log: map airsped_kt=TAS reads the column as a channel of that name and "
+                          "as no quantity; did you mean airspeed_kt?"});
+}
+
+TEST_CASE("velocity from speed, track and vertical speed") {
+  Flight log("log");
+  log.add("gs_kmh", {36, 72, 0}).add("track_deg", {90, 180, std::nan("")});
+  log.add("vs_mps", {1, -2, 0});
+  const ReadFlight read = read_as(log, {});
+  const auto north = values(read.flight, "vn_mps");
+  const auto east = values(read.flight, "ve_mps");
+  CHECK(north[0] == Approx(0.0));
+  CHECK(east[0] == Approx(10.0));
+  CHECK(north[1] == Approx(-20.0));
+  CHECK(east[1] == Approx(0.0));
+  CHECK(north[2] == 0.0);  // at a standstill there is no track
+  CHECK(values(read.flight, "vd_mps") == std::vector<double>{-1, 2, 0});
+  CHECK(read.notes.back() == "log: vn and ve are from gs_kmh and track_deg, taken from true north");
+}
+
+TEST_CASE("a magnetic track is turned by the variation, and not used without it") {
+  Flight log("log");
+  log.add("gs_mps", {10, 10}).add("Magnetic Track (deg)", {80, 350}).add("vd_mps", {0, 0});
+  CHECK(read_as(log, {}).flight.find("vn_mps") == nullptr);
+  log.add("magvar_deg", {10, 10});
+  const Flight read = read_as(log, {}).flight;
+  CHECK(values(read, "vn_mps")[0] == Approx(0.0));
+  CHECK(values(read, "ve_mps")[0] == Approx(10.0));
+  CHECK(values(read, "vn_mps")[1] == Approx(10.0));
+}
+
+TEST_CASE("where the positions go tells whether a track is magnetic") {
+  std::vector<double> latitude;
+  std::vector<double> longitude;
+  for (std::size_t i = 0; i < 100; ++i) {  // to the true north-east, some 14 m a row
+    latitude.push_back(1e-4 * static_cast<double>(i));
+    longitude.push_back(1e-4 * static_cast<double>(i));
+  }
+  for (const double logged : {45.0, 35.0}) {
+    Flight log("log");
+    log.add("gs_mps", std::vector<double>(100, 10)).add("vd_mps", std::vector<double>(100, 0));
+    log.add("track_deg", std::vector<double>(100, logged));
+    log.add("magvar_deg", std::vector<double>(100, 10));
+    log.add("lat_deg", latitude).add("lon_deg", longitude);
+    const Flight read = read_as(log, {}).flight;
+    CHECK(values(read, "vn_mps")[5] == Approx(10 / std::numbers::sqrt2));
+    CHECK(values(read, "ve_mps")[5] == Approx(10 / std::numbers::sqrt2));
+  }
+}
+
+TEST_CASE("without a vertical speed the altitude tells the climb, or flight is level") {
+  Flight log("log");
+  log.add("time_s", ramp(0, 0.5, 40)).add("gs_mps", std::vector<double>(40, 20));
+  log.add("track_deg", std::vector<double>(40, 0));
+  const ReadFlight level = read_as(log, {});
+  CHECK(values(level.flight, "vd_mps") == std::vector<double>(40, 0));
+  CHECK(level.notes.back() ==
+        "log: neither a vertical speed nor an altitude is logged: flight is taken for level, vd "
+        "for zero");
+  log.add("altitude_m", ramp(100, 1.5, 40));  // 3 m/s
+  for (const double down : values(read_as(log, {}).flight, "vd_mps")) {
+    CHECK(down == Approx(-3).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("angles in another unit than the header's are pointed out") {
+  Flight log("log");
+  std::vector<double> track;
+  for (std::size_t i = 0; i < 100; ++i)
+    track.push_back(std::fmod(0.1 * static_cast<double>(i), 6.28));
+  log.add("gs_mps", std::vector<double>(100, 20)).add("track_deg", track);
+  log.add("vd_mps", std::vector<double>(100, 0));
+  CHECK(read_as(log, {}).notes.front() ==
+        "log: track_deg turns over at 6.28, as an angle in radians does: if so, --map "
+        "track_rad=track_deg reads it so");
+  CHECK(read_as(log, {.map = {{"track_rad", "track_deg"}}}).notes.size() == 1);
+}
+
+TEST_CASE("time from the GPS's week and time of week") {
+  Flight log("log");
+  log.add("GWk", {2200, 2200, 2201}).add("GMS", {604799000, 604799500, 0});
+  const ReadFlight read = read_as(log, {});
+  CHECK(values(read.flight, "time_s") == std::vector<double>{604799, 604799.5, 604800});
+  CHECK(read.notes == std::vector<std::string>{"log: time is GMS and GWk, in seconds"});
+  Flight without_week("log");
+  without_week.add("gps_tow_s", {604799, 0.5});
+  CHECK(values(read_as(without_week, {}).flight, "time_s") ==
+        std::vector<double>{604799, 604800.5});
+}
+
+TEST_CASE("of total, static and impact pressure the missing one") {
+  Flight tube("log");
+  tube.add("pt_hpa", {1010}).add("ps_pa", {100000});
+  const ReadFlight read = read_as(tube, {});
+  CHECK(values(read.flight, "dp_pa")[0] == Approx(1000));
+  CHECK(read.notes == std::vector<std::string>{"log: dp is pt_hpa - ps_pa"});
+  Flight five_hole("log");
+  five_hole.add("dp_pa", {1000}).add("ps_pa", {100000}).add("dpa_pa", {1});
+  CHECK(values(read_as(five_hole, {}).flight, "pt_pa")[0] == 101000);
+}
+
 TEST_CASE("a choice of columns that can't be is refused") {
   Flight log("log");
   log.add("TAS", {40, 41}).add("airspeed_kt", {9, 9});

@@ -70,7 +70,7 @@ constexpr const char* silence = "0 sentences";
 TEST_CASE("angles beyond a turn look like degrees") {
   CHECK(describe("yaw", UnitKind::angle, {1, 90, 213, -2}) ==
         "column 'yaw_rad' lies outside -6.3 to 6.3 rad in 2 of 4 rows (it goes from -2 to 213); if "
-        "it is in deg, its header should say so");
+        "it is in deg, --map yaw_deg=yaw_rad reads it so");
   CHECK(describe("roll", UnitKind::angle, {6.4}).starts_with("column 'roll_rad' lies outside"));
   CHECK(describe("pitch", UnitKind::angle, {0, -12}).find("in deg") != std::string::npos);
   CHECK(describe("yaw", UnitKind::angle, {0, 6.28, -6.28}) == silence);
@@ -131,7 +131,7 @@ TEST_CASE("fields that are not the Earth's") {
   CHECK(field("b", 350).describe().size() == 1);
   CHECK(field("h", 0.53).describe()[0] ==
         "the field of hx_ut, hy_ut, hz_ut is usually 0.53 uT strong, which lies outside 5 to 200 "
-        "uT; if it is in gauss, its header should say so");
+        "uT; if it is in gauss, --map hx_gauss=hx_ut,hy_gauss=hy_ut,hz_gauss=hz_ut reads it so");
   CHECK(field("m", 530).describe()[0].find("if it is in mgauss,") != std::string::npos);
   CHECK(field("b", 53'000).describe()[0].find("if it is in nt,") != std::string::npos);
 }
