@@ -13,6 +13,7 @@
 #include "running.hpp"
 #include "sepcal/fit.hpp"
 #include "simulation_arguments.hpp"
+#include "tables.hpp"
 #include "verbs.hpp"
 
 namespace sepcal::app {
@@ -94,6 +95,8 @@ class CommandLine {
         check_(cli.add_subcommand("check", "says what a log is, and what that does to a fit")),
         fit_(cli.add_subcommand("fit", "fits the model to a flight")),
         compare_(add_later_verb("compare", "shows where the model fails")),
+        residuals_(
+            add_later_verb("residuals", "writes what the model leaves, row by row", true, false)),
         intervals_(
             add_later_verb("intervals", "says how far each parameter may lie, by the likelihood")),
         diagnose_(add_later_verb("diagnose", "names the physical effect that is missing")),
@@ -105,13 +108,15 @@ class CommandLine {
     add_flight(*check_);
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
         ->type_name("C.json");
-    instrument.add_probe_options(*check_);
+    add_probe_options(*check_);
     typed_.log.add_log_choice_to(*check_);
     add_json(*check_);
 
     add_flight(*fit_);
     add_more_flights(*fit_, typed_.more_flights,
                      "other flights, fitted jointly with it; their names end in .csv");
+    add_probe_options(*fit_);
+    fit_->option_defaults()->group("The fit");
     fit_->add_option("--own", typed_.own,
                      "of several flights: parameters that each has for itself, e.g. wind")
         ->type_name("NAME[,...]")
@@ -119,7 +124,6 @@ class CommandLine {
         ->allow_extra_args(false);
     add_file(*fit_, "-o,--output", typed_.output, "writes the calibration there")
         ->type_name("BASE.json");
-    instrument.add_probe_options(*fit_);
     fit_arguments_.add_to(*fit_);
     fit_->add_flag("--certify", typed_.certify,
                    "proves that no cost within the bounds is lower, where one or two nonlinear "
@@ -129,6 +133,10 @@ class CommandLine {
     add_json(*fit_);
 
     instrument.add_flight_options(*compare_);
+    instrument.add_flight_options(*residuals_);
+    add_file(*residuals_, "-o,--output", typed_.output, "writes the table there")
+        ->type_name("R.csv")
+        ->required();
     intervals_asked_.add_to(*intervals_);
     add_file(*intervals_, "-o,--output", typed_.output, "writes the intervals there")
         ->type_name("I.json");
@@ -155,6 +163,7 @@ class CommandLine {
     if (check_->parsed()) return verbs.check();
     if (fit_->parsed()) return verbs.fit(fit_arguments_.resolve());
     if (compare_->parsed()) return verbs.compare();
+    if (residuals_->parsed()) return verbs.residuals();
     if (intervals_->parsed()) return verbs.intervals(intervals_asked_.resolve());
     if (add_->parsed()) return verbs.add();
     if (apply_->parsed()) return verbs.apply();
@@ -167,7 +176,8 @@ class CommandLine {
 
  private:
   /// A verb that takes a calibration and a flight.
-  CLI::App* add_later_verb(const char* name, const char* what, bool of_several = true) {
+  CLI::App* add_later_verb(const char* name, const char* what, bool of_several = true,
+                           bool has_json = true) {
     CLI::App& verb = *cli_.add_subcommand(name, what);
     add_flight(verb);
     if (of_several)
@@ -175,17 +185,25 @@ class CommandLine {
                        "the other flights of a joint fit, names in .csv");
     add_file(verb, "CALIBRATION", typed_.calibration, "what fit wrote with -o")->required();
     typed_.log.add_log_choice_to(verb);
-    add_explain(verb);
-    add_json(verb);
+    if (has_json) {
+      add_explain(verb);
+      add_json(verb);
+    }
     return &verb;
   }
 
   void add_flight(CLI::App& verb) {
-    add_file(verb, "FLIGHT", typed_.flight, "the log, a CSV file")->required();
+    add_file(verb, "FLIGHT", typed_.flight, "the log; - is standard input")->required();
+  }
+
+  void add_probe_options(CLI::App& verb) {
+    verb.option_defaults()->group("What is known of the sensor");
+    instrument_.add_probe_options(verb);
+    verb.option_defaults()->group("Options");
   }
 
   void add_json(CLI::App& verb) {
-    verb.add_flag("--json", typed_.json, "prints the result as JSON on standard output");
+    verb.add_flag("-j,--json", typed_.json, "prints the result as JSON on standard output");
   }
 
   void add_explain(CLI::App& verb) {
@@ -204,6 +222,7 @@ class CommandLine {
   CLI::App* check_;
   CLI::App* fit_;
   CLI::App* compare_;
+  CLI::App* residuals_;
   CLI::App* intervals_;
   CLI::App* diagnose_;
   CLI::App* add_;
@@ -219,6 +238,13 @@ int run(Instrument& instrument, const std::string& called, int argc, char** argv
   CLI::App cli(instrument.summary(), called);
   CommandLine command_line(instrument, cli);
   return run(cli, argc, argv, [&] { return command_line.perform(); });
+}
+
+std::string table_of(Instrument& instrument, const std::string& called) {
+  CLI::App cli(instrument.summary(), called);
+  const CommandLine command_line(instrument, cli);
+  complete(cli);
+  return table_of(cli);
 }
 
 }  // namespace sepcal::app

@@ -22,6 +22,22 @@ bool is_there(const std::string& file) {
   return !file.empty() && std::filesystem::exists(file, ignored);
 }
 
+void give(bool json, const std::string& told, const std::string& page) {
+  if (json) {
+    print(told);
+  } else {
+    show(page);
+  }
+}
+
+void deliver_residuals(const ResidualTable& table, const std::string& output, OutputFile& target) {
+  tell_notes(table.notes);
+  write_csv(table, target);
+  target.commit();
+  show(base::page("wrote {}: {} rows, of which {} were used\n", output, table.rows(),
+                  table.rows_used()));
+}
+
 Delivery::Delivery(Wishes wishes, const std::vector<std::string>& inputs)
     : wishes_(std::move(wishes)) {
   if (wishes_.output.empty()) return;
@@ -34,8 +50,8 @@ void Delivery::deliver(const std::string& json, const std::string& page) {
     file_->write(json);
     file_->commit();
   }
-  print(wishes_.json ? json : page);
-  if (file_ && !wishes_.json) print(base::page("wrote {}\n", wishes_.output));
+  give(wishes_.json, json, page);
+  if (file_ && !wishes_.json) show(base::page("wrote {}\n", wishes_.output));
 }
 
 }  // namespace sepcal::app

@@ -8,20 +8,30 @@
 #include <string>
 #include <vector>
 
+#include "manners.hpp"
 #include "sepcal/detail/flight/output_file.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/flight/calibration.hpp"
+#include "sepcal/flight/residuals.hpp"
 #include "terminal.hpp"
 
 namespace sepcal::app {
 
-inline Detail detail_of(bool explain) { return explain ? Detail::explained : Detail::brief; }
+inline Detail detail_of(bool explain) {
+  return explain || manners().verbose ? Detail::explained : Detail::brief;
+}
 
 /// 0 converged, 4 not identifiable, 5 not converged.
 int exit_code(FitStatus status);
 
 /// Whether a file of that name is there to be read; what can't be told is not.
 bool is_there(const std::string& file);
+
+/// Prints JSON where it is wanted, else the page.
+void give(bool json, const std::string& told, const std::string& page);
+
+/// Writes the table to `target`, which is called `output`, and says so.
+void deliver_residuals(const ResidualTable& table, const std::string& output, OutputFile& target);
 
 class Delivery {
  public:

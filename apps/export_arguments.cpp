@@ -81,8 +81,7 @@ ExportOptions ExportArguments::resolve() const {
   }
   if (!rotation_.empty()) options.rotation = choice_of<ExportRotation>("--rotation", rotation_);
   if (!mounting_.empty()) {
-    options.mounting =
-        parse_turn("--mounting", mounting_, "0,0,90 (roll, pitch, yaw in degrees)");
+    options.mounting = parse_turn("--mounting", mounting_, "0,0,90 (roll, pitch, yaw in degrees)");
   }
   return options;
 }

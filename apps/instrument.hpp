@@ -76,4 +76,7 @@ class Instrument {
 /// "sepcal-mag", or "sepcal mag".
 int run(Instrument& instrument, const std::string& called, int argc, char** argv);
 
+/// What can be typed after that, as tables.hpp has it.
+std::string table_of(Instrument& instrument, const std::string& called);
+
 }  // namespace sepcal::app

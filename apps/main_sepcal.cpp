@@ -7,7 +7,9 @@
 int main(int argc, char** argv) {
   using namespace sepcal::app;
   return start("sepcal", [&] {
-    return run_sepcal({{"mag", run_mag}, {"pitot", run_pitot}, {"aircraft", run_aircraft}}, argc,
-                      argv);
+    return run_sepcal({{"mag", run_mag, mag_table},
+                       {"pitot", run_pitot, pitot_table},
+                       {"aircraft", run_aircraft, aircraft_table}},
+                      {}, argc, argv);
   });
 }

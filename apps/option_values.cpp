@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "flight/probes/mounting.hpp"
+#include "manners.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::app {
@@ -66,7 +67,13 @@ CLI::Option* add_file(CLI::App& verb, const std::string& name, std::string& file
   const auto refuse_empty = [](const std::string& text) -> std::string {
     return text.empty() ? "the name is empty; name a file" : "";
   };
-  return verb.add_option(name, file, description)->check(refuse_empty);
+  CLI::Option* const option = verb.add_option(name, file, description)->check(refuse_empty);
+  const bool is_output = name.ends_with("--output");
+  if (!is_output && name.starts_with("-")) return option;
+  const auto name_stream = [is_output](const std::string& typed) {
+    return typed != "-" ? typed : is_output ? standard_output : standard_input;
+  };
+  return option->transform(name_stream);
 }
 
 void add_more_flights(CLI::App& verb, std::vector<std::string>& files, const std::string& what) {

@@ -45,7 +45,7 @@ CLI::Option* add_whole_number(CLI::App& verb, const std::string& name, T& value,
 }
 
 /// An option or argument that names a file; an empty name (an unset variable of the shell) is
-/// refused.
+/// refused. "-" is standard output for --output, and standard input for an argument.
 CLI::Option* add_file(CLI::App& verb, const std::string& name, std::string& file,
                       const std::string& description);
 

@@ -12,4 +12,9 @@ int run_pitot(const std::string& called, int argc, char** argv);
 int run_mag(const std::string& called, int argc, char** argv);
 int run_aircraft(const std::string& called, int argc, char** argv);
 
+/// What each can be asked, as tables.hpp has it.
+std::string pitot_table();
+std::string mag_table();
+std::string aircraft_table();
+
 }  // namespace sepcal::app

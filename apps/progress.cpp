@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include "manners.hpp"
 #include "terminal.hpp"
 
 namespace sepcal::app {
@@ -27,7 +28,7 @@ void ProgressLine::show(std::string_view task, double fraction) {
     task_ = task;
     begun_ = now;
   }
-  if (now < next_) return;
+  if (now < next_ || manners().quiet) return;
   next_ = now + (terminal_ ? Clock::duration(100ms) : between_lines);
   Page line = page("{}: {:3.0f} %", task, 100.0 * fraction);
   const double elapsed = std::chrono::duration<double>(now - begun_).count();
@@ -46,6 +47,17 @@ void ProgressLine::clear() {
 
 FitProgress shown_on(ProgressLine& line) {
   return [&line](std::string_view task, double fraction) { line.show(task, fraction); };
+}
+
+Flight read_told(const std::string& file, const std::function<Flight(const Progress& show)>& read) {
+  const auto begun = std::chrono::steady_clock::now();
+  ProgressLine line;
+  Flight flight = read([&](double fraction) { line.show("reading " + file, fraction); });
+  line.clear();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begun;
+  tell_more(page("read {}: {} rows, {} columns, {:.2f} s\n", file, flight.rows(),
+                 flight.columns().size(), elapsed.count()));
+  return flight;
 }
 
 }  // namespace sepcal::app

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <string_view>
 
+#include "sepcal/flight/flight.hpp"
 #include "sepcal/options.hpp"
 
 namespace sepcal::app {
@@ -36,5 +38,8 @@ class ProgressLine {
 
 /// What a fit reports, shown on the line.
 FitProgress shown_on(ProgressLine& line);
+
+/// What `read` makes of a log, with its progress shown; --verbose says what came of it.
+Flight read_told(const std::string& file, const std::function<Flight(const Progress& show)>& read);
 
 }  // namespace sepcal::app

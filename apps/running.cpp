@@ -4,14 +4,19 @@
 #include <fmt/format.h>
 
 #include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <exception>
 #include <new>
+#include <utility>
 
 #include "base/escaping.hpp"
 #include "base/name_list.hpp"
+#include "help.hpp"
 #include "interrupt.hpp"
+#include "manners.hpp"
+#include "project_file.hpp"
 #include "sepcal/detail/solver_log.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/csv.hpp"
@@ -97,36 +102,114 @@ std::string describe(const CLI::App& cli, const CLI::ParseError& error) {
 int refuse_usage(const CLI::App& cli, const CLI::ParseError& error) {
   std::string command = cli.get_name();
   for (const CLI::App* verb : cli.get_subcommands()) command += " " + verb->get_name();
-  tell(page("{}: {} (see {} --help)\n", cli.get_name(), describe(cli, error), command));
+  tell_refusal(cli.get_name(), fmt::format("{} (see {} --help)", describe(cli, error), command));
   return bad_usage;
 }
 
+/// What was typed for an option or an argument; empty where it is not there.
+std::vector<std::string> typed_for(const CLI::App& verb, const char* name) {
+  const CLI::Option* const option = verb.get_option_no_throw(name);
+  return option == nullptr ? std::vector<std::string>{} : option->results();
+}
+
+/// Takes what goes to standard output and comes from standard input as it was typed.
+void use_streams(const CLI::App& verb) {
+  for (const char* const argument : {"FLIGHT", "CALIBRATION", "FIT", "MEASURED", "OTHER"}) {
+    const auto names = typed_for(verb, argument);
+    if (!names.empty() && names.front() == standard_input) spool_standard_input();
+  }
+  const auto outputs = typed_for(verb, "--output");
+  if (outputs.empty() || outputs.front() != standard_output) return;
+  manners().shows_page = false;
+  const CLI::Option* const json = verb.get_option_no_throw("--json");
+  if (json != nullptr && json->count() > 0) {
+    throw Error("-o - and --json would both print a result; leave one out");
+  }
+}
+
+/// CLI11 takes them from the last to the first.
+void parse(CLI::App& cli, std::vector<std::string> words) {
+  std::ranges::reverse(words);
+  cli.parse(std::move(words));
+}
+
+/// Reads the command line; where a project says more, once more with that.
+void parse_with_project(CLI::App& cli, std::vector<std::string> words) {
+  std::exception_ptr lacking;
+  try {
+    parse(cli, words);
+  } catch (const CLI::RequiredError&) {
+    lacking = std::current_exception();  // the project may have it
+  }
+  const auto verbs = cli.get_subcommands();
+  std::vector<std::string> known;
+  std::string file = manners().project;
+  if (!verbs.empty() && takes_project(*verbs.front())) {
+    const auto flights = typed_for(*verbs.front(), "FLIGHT");
+    if (file.empty() && !flights.empty()) file = find_project_file(flights.front());
+    if (!file.empty()) known = read_project(file, cli, *verbs.front());
+  }
+  if (known.empty()) {
+    if (lacking) std::rethrow_exception(lacking);
+    return;
+  }
+  words.insert(words.end(), known.begin(), known.end());
+  try {
+    parse(cli, words);
+  } catch (const CLI::RequiredError&) {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    throw Error(fmt::format("{}: {}", file, error.what()));
+  }
+  std::string options;
+  for (const std::string& word : known) options += " " + base::in_shell(word);
+  tell_notes({fmt::format("{} says{}", file, options)});
+}
+
 }  // namespace
+
+void complete(CLI::App& cli) {
+  const std::string version = std::string("sepcal ") + SEPCAL_VERSION;
+  cli.set_version_flag("--version", version, "prints the version")->group(result_group);
+  cli.set_help_flag("-h,--help", "prints this")->group(result_group);
+  cli.footer(exit_codes);
+  cli.formatter(std::make_shared<HelpPage>());
+  for (CLI::App* verb : cli.get_subcommands({})) {
+    verb->formatter(cli.get_formatter());
+    verb->set_help_flag("-h,--help", "prints this");
+    add_manners(*verb);
+    verb->set_version_flag("--version", version, "prints the version")->group(result_group);
+  }
+}
 
 int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perform) {
   const SignalScope full_quota(SIGXFSZ, SIG_IGN);  // an error to report, not an end
   silence_solver_log();
   cli.require_subcommand(1);
-  cli.set_version_flag("--version", std::string("sepcal ") + SEPCAL_VERSION);
-  cli.footer(
-      "Exit codes: 0 done, 2 bad input or usage, 3 an effect is missing, 4 not identifiable,\n"
-      "5 did not converge, 6 something is missing that no candidate explains,\n"
-      "130 stopped by Ctrl-C.");
+  manners() = {};
+  complete(cli);
+  const auto refuse = [&](const std::string& what) {
+    tell_refusal(cli.get_name(), what);
+    return bad_usage;
+  };
   try {
-    cli.parse(argc, argv);
+    parse_with_project(cli, {argv + std::min(argc, 1), argv + argc});
   } catch (const CLI::Success& help) {
     return cli.exit(help);
   } catch (const CLI::ParseError& error) {
     return refuse_usage(cli, error);
+  } catch (const Error& error) {
+    return refuse(error.what());
   }
 
-  const auto refuse = [&](const std::string& what) {
-    tell(page("{}: {}\n", cli.get_name(), what));
-    return bad_usage;
-  };
   try {
     const InterruptScope scope(cli.get_name());
-    return perform();
+    const auto begun = std::chrono::steady_clock::now();
+    use_streams(*cli.get_subcommands().front());
+    const int code = perform();
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begun;
+    tell_more(page("done in {:.2f} s\n", elapsed.count()));
+    return manners().exit_zero ? 0 : code;
   } catch (const Stopped&) {
     tell(page("{}: stopped by Ctrl-C; no file was written\n", cli.get_name()));
     return interrupted;

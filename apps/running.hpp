@@ -14,6 +14,9 @@ namespace sepcal::app {
 /// The exit code of bad input and of a command line that can't be read.
 inline constexpr int bad_usage = 2;
 
+/// Adds the options that every verb has, and how help is printed.
+void complete(CLI::App& cli);
+
 /// Parses the command line, calls `perform`, and maps every error to one line. Returns the exit
 /// code: 0, 2, or what `perform` gives. `cli` has the app's name and its verbs.
 int run(CLI::App& cli, int argc, char** argv, const std::function<int()>& perform);

@@ -8,8 +8,11 @@
 #include <cctype>
 
 #include "commands.hpp"
+#include "delivery.hpp"
 #include "running.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/error.hpp"
+#include "tables.hpp"
 #include "terminal.hpp"
 
 namespace sepcal::app {
@@ -19,7 +22,7 @@ using base::page;
 namespace {
 
 int refuse(const std::string& what) {
-  tell(page("sepcal: {} (see sepcal --help)\n", what));
+  tell_refusal("sepcal", what + " (see sepcal --help)");
   return bad_usage;
 }
 
@@ -56,37 +59,56 @@ bool has(const Flight& flight, std::string_view quantity) {
   });
 }
 
-/// `sepcal check FILE`, `sepcal join FILE OTHER`: by the program whose columns the file has.
-int run_on_file(const std::vector<NamedProgram>& programs, int argc, char** argv) {
-  const auto is_name = [](std::string_view word) { return !word.starts_with("-"); };
-  char** const file = std::find_if(argv + 1, argv + argc, is_name);
-  if (file == argv + argc) {
-    return refuse(fmt::format(
-        "{0}: name a file; an instrument's own has more: sepcal mag {0} --help", argv[0]));
+/// The first word that names a file to be read; where none is there, the first that could.
+std::string first_file(const std::vector<std::string>& words) {
+  std::string could;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool is_output = i > 0 && (words[i - 1] == "-o" || words[i - 1] == "--output");
+    if (is_output || words[i].starts_with("-")) continue;
+    if (is_there(words[i])) return words[i];
+    if (could.empty()) could = words[i];
+  }
+  return could;
+}
+
+/// `sepcal check FILE` and `sepcal join FILE OTHER`: by the program whose columns the file has.
+int run_guessed(const std::vector<NamedProgram>& programs, int argc, char** argv) {
+  const std::string verb = argv[0];
+  const std::string called = "sepcal " + verb;
+  const std::string file = first_file({argv + 1, argv + argc});
+  if (file.empty()) {
+    return refuse(
+        fmt::format("{0}: name a file; an instrument's own has more: sepcal mag {0} --help", verb));
   }
   Guess guess;
   try {
-    guess = guess_instrument(read_csv(*file), argv[0]);
+    guess = guess_instrument(read_as(read_csv(file), {}).flight);
   } catch (const std::exception& error) {
-    tell(page("sepcal {}: {}\n", argv[0], error.what()));
+    tell_refusal(called, error.what());
     return bad_usage;
   }
-  tell(page("note: {}\n", guess.reason));
+  // Any sensor's join is the same; an aircraft has none.
+  if (verb == "join" && (guess.command.empty() || guess.command == "aircraft")) {
+    guess.command = "pitot";
+  }
   const auto program = std::ranges::find(programs, guess.command, &NamedProgram::name);
-  if (program == programs.end()) return bad_usage;
+  if (program == programs.end()) {
+    tell_refusal(called, guess.reason);
+    return bad_usage;
+  }
+  if (verb == "check") tell_notes({guess.reason});
   std::vector<char*> words{argv[0]};
   words.insert(words.end(), argv, argv + argc);
   static char model[] = "--model=path";  // what an aircraft's log is checked for
   const bool names_model =
       std::ranges::any_of(words, [](std::string_view word) { return word.starts_with("--model"); });
-  if (guess.command == "aircraft" && !names_model && std::string_view(argv[0]) == "check")
-    words.push_back(model);
+  if (guess.command == "aircraft" && verb == "check" && !names_model) words.push_back(model);
   return program->run("sepcal " + guess.command, static_cast<int>(words.size()), words.data());
 }
 
 }  // namespace
 
-Guess guess_instrument(const Flight& flight, std::string_view verb) {
+Guess guess_instrument(const Flight& flight) {
   std::vector<const Signature*> found;
   for (const Signature& signature : signatures()) {
     const auto is_there = [&](std::string_view quantity) { return has(flight, quantity); };
@@ -103,16 +125,17 @@ Guess guess_instrument(const Flight& flight, std::string_view verb) {
                         flight.name(), flight.list_columns())};
   }
   const Signature& first = *found.front();
-  std::string reason = fmt::format("{} is taken for the log of {}: sepcal {} {}", flight.name(),
-                                   first.sensor, first.command, verb);
+  std::string reason = fmt::format("{} is taken for the log of {}: sepcal {} check", flight.name(),
+                                   first.sensor, first.command);
   for (std::size_t i = 1; i < found.size(); ++i) {
-    reason += fmt::format("{}of {}: sepcal {} {}", i == 1 ? "; it may also be that " : ", ",
-                          found[i]->sensor, found[i]->command, verb);
+    reason += fmt::format("{}of {}: sepcal {} check", i == 1 ? "; it may also be that " : ", ",
+                          found[i]->sensor, found[i]->command);
   }
   return {std::string(first.command), std::move(reason)};
 }
 
-int run_sepcal(const std::vector<NamedProgram>& programs, int argc, char** argv) try {
+int run_sepcal(const std::vector<NamedProgram>& programs, const std::vector<std::string>& others,
+               int argc, char** argv) try {
   if (argc < 2) return refuse("a command is missing; the commands are: " + list_commands());
   const std::string word = argv[1];
   if (word == "--help" || word == "-h" || word == "help") {
@@ -125,18 +148,27 @@ int run_sepcal(const std::vector<NamedProgram>& programs, int argc, char** argv)
   }
   const auto program = std::ranges::find(programs, word, &NamedProgram::name);
   if (program != programs.end()) return program->run("sepcal " + word, argc - 1, argv + 1);
-  if (word == "check" || word == "join") return run_on_file(programs, argc - 1, argv + 1);
+  if (word == "check" || word == "join") return run_guessed(programs, argc - 1, argv + 1);
+  if (word == "completion" || word == "manual") {
+    if (argc != 3)
+      return refuse(word == "manual" ? "manual: name a page, e.g. sepcal manual sepcal"
+                                     : "completion: name a shell: bash, zsh, fish");
+    std::vector<std::string> tables = others;
+    for (const NamedProgram& each : programs) tables.push_back(each.table());
+    print(word == "manual" ? manual_page(argv[2], tables) : completions(argv[2], tables));
+    return 0;
+  }
   const Command* const command = find_command(word);
   if (command != nullptr && command->kind == CommandKind::python) {
-    tell(
-        page("sepcal {0}: is in the Python package: pip install sepcal, then python -m sepcal "
-             "{0}\n",
-             word));
+    tell_refusal(
+        "sepcal " + word,
+        fmt::format("is in the Python package: pip install sepcal, then python -m sepcal {}",
+                    word));
     return bad_usage;
   }
   return refuse(explain_unknown_command(word));
 } catch (const Error& error) {  // as of a full disc behind standard output
-  tell(page("sepcal: {}\n", error.what()));
+  tell_refusal("sepcal", error.what());
   return bad_usage;
 }
 

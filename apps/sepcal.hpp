@@ -15,16 +15,19 @@ namespace sepcal::app {
 struct NamedProgram {
   std::string_view name;
   std::function<int(const std::string& called, int argc, char** argv)> run;  // as in programs.hpp
+  std::function<std::string()> table;
 };
 
-/// Runs `sepcal COMMAND ...` and returns its exit code.
-int run_sepcal(const std::vector<NamedProgram>& programs, int argc, char** argv);
+/// Runs `sepcal COMMAND ...` and returns its exit code. `others` are the tables of commands that
+/// are not here.
+int run_sepcal(const std::vector<NamedProgram>& programs, const std::vector<std::string>& others,
+               int argc, char** argv);
 
 /// The instrument whose columns a flight has, and why it is taken for that one.
 struct Guess {
   std::string command;  // "mag", or empty where there is none
   std::string reason;
 };
-Guess guess_instrument(const Flight& flight, std::string_view verb);
+Guess guess_instrument(const Flight& flight);
 
 }  // namespace sepcal::app

@@ -25,12 +25,16 @@
 #include "sepcal/flight/aircraft.hpp"
 #include "sepcal/simulation/aircraft.hpp"
 #include "simulation_arguments.hpp"
+#include "tables.hpp"
 #include "terminal.hpp"
 
 namespace sepcal::app {
 using base::page;
 
 namespace {
+
+constexpr const char* summary =
+    "Finds flight paths, sensors' errors and aerodynamic coefficients in flight logs.";
 
 std::vector<std::string> split_names(const std::string& text) {
   return text.empty() ? std::vector<std::string>{} : split(text, ',');
@@ -195,6 +199,7 @@ class AircraftApp {
         two_step_(*cli.add_subcommand("two-step",
                                       "reconstructs the path, then fits the aerodynamics to it")),
         compare_(*cli.add_subcommand("compare", "shows where the model fails")),
+        residuals_(*cli.add_subcommand("residuals", "writes what the model leaves, row by row")),
         intervals_(*cli.add_subcommand("intervals",
                                        "says how far each parameter may lie, by the likelihood")),
         diagnose_(*cli.add_subcommand("diagnose", "names the effect or regressor that is missing")),
@@ -204,12 +209,12 @@ class AircraftApp {
         simulate_(*cli.add_subcommand("simulate", "makes a flight whose truth is known")),
         effects_(
             *cli.add_subcommand("effects", "lists effects, regressors and how to write more")) {
-    for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_,
-                           &apply_, &track_}) {
+    for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &residuals_, &intervals_,
+                           &diagnose_, &add_, &apply_, &track_}) {
       add_flight(*verb);
     }
     add_more_flights(fit_, more_flights_, "other flights, fitted together with it; names in .csv");
-    for (CLI::App* verb : {&compare_, &intervals_, &diagnose_, &add_}) {
+    for (CLI::App* verb : {&compare_, &residuals_, &intervals_, &diagnose_, &add_}) {
       add_more_flights(*verb, more_flights_,
                        "the other flights of a fit of several; names in .csv");
     }
@@ -221,7 +226,8 @@ class AircraftApp {
       fit_arguments_.add_to(*verb);
       add_output(*verb, "BASE.json", false);
     }
-    for (CLI::App* verb : {&compare_, &intervals_, &diagnose_, &add_, &apply_, &track_}) {
+    for (CLI::App* verb :
+         {&compare_, &residuals_, &intervals_, &diagnose_, &add_, &apply_, &track_}) {
       add_file(*verb, "FIT", base_, "what fit wrote with -o")->required();
     }
     for (CLI::App* verb : {&fit_, &two_step_, &apply_, &track_}) {
@@ -239,6 +245,7 @@ class AircraftApp {
     add_.add_option("E", effect_, "the effect: Cm[alpha^2], imu_late (see effects)")->required();
     add_output(check_, "C.json", false);
     add_output(compare_, "COMPARED.json", false);
+    add_output(residuals_, "R.csv", true);
     add_output(intervals_, "I.json", false);
     profiles_.add_to(intervals_);
     add_output(diagnose_, "D.json", false);
@@ -255,7 +262,7 @@ class AircraftApp {
     simulation_.add_to(simulate_);
     for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_,
                            &apply_, &track_, &simulate_, &effects_}) {
-      verb->add_flag("--json", wishes_.json, "prints the result as JSON on standard output");
+      verb->add_flag("-j,--json", wishes_.json, "prints the result as JSON on standard output");
     }
     for (CLI::App* verb : {&fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_}) {
       verb->add_flag("--explain", wishes_.explain, "prints all that the fit says of its status");
@@ -267,19 +274,20 @@ class AircraftApp {
     if (fit_.parsed()) return fit();
     if (two_step_.parsed()) return two_step();
     if (compare_.parsed()) return compare();
+    if (residuals_.parsed()) return residuals();
     if (intervals_.parsed()) return intervals();
     if (diagnose_.parsed()) return diagnose();
     if (add_.parsed()) return add();
     if (apply_.parsed()) return apply();
     if (track_.parsed()) return track();
     if (simulate_.parsed()) return simulate();
-    print(wishes_.json ? aircraft_effects_json() : aircraft_effects_text());
+    give(wishes_.json, aircraft_effects_json(), aircraft_effects_text());
     return 0;
   }
 
  private:
   void add_flight(CLI::App& verb) {
-    add_file(verb, "FLIGHT", flight_, "the log, a CSV file")->required();
+    add_file(verb, "FLIGHT", flight_, "the log; - is standard input")->required();
   }
 
   void add_output(CLI::App& verb, const char* type, bool required) {
@@ -289,9 +297,8 @@ class AircraftApp {
   }
 
   static Flight read_flight(const std::string& file, const LogChoice& log) {
-    ProgressLine line;
-    const auto show = [&](double fraction) { line.show("reading " + file, fraction); };
-    return read_csv(file, show, 0, log.form());
+    return read_told(file,
+                     [&](const Progress& show) { return read_csv(file, show, 0, log.form()); });
   }
 
   Flight read_flight(const LogChoice& log) const { return read_flight(flight_, log); }
@@ -358,6 +365,17 @@ class AircraftApp {
     return 0;
   }
 
+  int residuals() const {
+    for (const std::string& file : input_files(base_)) check_not_input(wishes_.output, file);
+    OutputFile output(wishes_.output);
+    const AircraftFit base = read_aircraft_fit(base_);
+    const Flight flight = read_flights(base);
+    deliver_residuals(tabulate_residuals(compare_aircraft(base, flight), flight,
+                                         base.options.calibration.log, base.fit.noise),
+                      wishes_.output, output);
+    return 0;
+  }
+
   int intervals() const {
     Delivery delivery(wishes_, input_files(base_));
     const AircraftFit base = read_aircraft_fit(base_);
@@ -410,7 +428,7 @@ class AircraftApp {
     const Applied applied = apply_aircraft_to_file(
         base, flight_, wishes_.output, parse_deviations("--process-noise", process_noise_));
     tell_notes(applied.notes);
-    print(wishes_.json ? to_json(applied, base) : to_text(applied, base));
+    give(wishes_.json, to_json(applied, base), to_text(applied, base));
     return 0;
   }
 
@@ -427,8 +445,8 @@ class AircraftApp {
     tell_notes(tracked.notes);
     write_csv(tracked, output);
     output.commit();
-    print(wishes_.json ? to_json(tracked)
-                       : to_text(tracked) + page("wrote {}\n", wishes_.output).text());
+    give(wishes_.json, to_json(tracked),
+         to_text(tracked) + page("wrote {}\n", wishes_.output).text());
     return 0;
   }
 
@@ -453,7 +471,7 @@ class AircraftApp {
     write_csv(flight, output.stream());
     output.flush();
     output.commit();
-    print(wishes_.json ? flown : page("wrote {}: {} rows\n", wishes_.output, flight.rows()).text());
+    give(wishes_.json, flown, page("wrote {}: {} rows\n", wishes_.output, flight.rows()).text());
     return 0;
   }
 
@@ -476,6 +494,7 @@ class AircraftApp {
   CLI::App& fit_;
   CLI::App& two_step_;
   CLI::App& compare_;
+  CLI::App& residuals_;
   CLI::App& intervals_;
   CLI::App& diagnose_;
   CLI::App& add_;
@@ -488,10 +507,16 @@ class AircraftApp {
 }  // namespace
 
 int run_aircraft(const std::string& called, int argc, char** argv) {
-  CLI::App cli("Finds flight paths, sensors' errors and aerodynamic coefficients in flight logs.",
-               called);
+  CLI::App cli(summary, called);
   const AircraftApp app(cli);
   return run(cli, argc, argv, [&] { return app.perform(); });
+}
+
+std::string aircraft_table() {
+  CLI::App cli(summary, "sepcal aircraft");
+  const AircraftApp app(cli);
+  complete(cli);
+  return table_of(cli);
 }
 
 }  // namespace sepcal::app

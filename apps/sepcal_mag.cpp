@@ -10,6 +10,7 @@
 #include "programs.hpp"
 #include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
+#include "terminal.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -121,6 +122,11 @@ class Magnetometer final : public Instrument {
 int run_mag(const std::string& called, int argc, char** argv) {
   Magnetometer magnetometer;
   return run(magnetometer, called, argc, argv);
+}
+
+std::string mag_table() {
+  Magnetometer instrument;
+  return table_of(instrument, "sepcal mag");
 }
 
 }  // namespace sepcal::app

@@ -144,4 +144,9 @@ int run_pitot(const std::string& called, int argc, char** argv) {
   return run(pitot, called, argc, argv);
 }
 
+std::string pitot_table() {
+  Pitot instrument;
+  return table_of(instrument, "sepcal pitot");
+}
+
 }  // namespace sepcal::app

@@ -24,6 +24,7 @@
 #include "sepcal/flight/export.hpp"
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
+#include "sepcal/flight/residuals.hpp"
 #include "terminal.hpp"
 
 namespace sepcal::app {
@@ -35,11 +36,11 @@ Flight Verbs::read_flight(const LogChoice& log, int threads) const {
 }
 
 Flight Verbs::read_flight(const std::string& file, const LogChoice& log, int threads) const {
-  ProgressLine line;
-  const auto show = [&](double fraction) { line.show("reading " + file, fraction); };
   const CsvForm form = arguments_.log.over(log).form();
-  if (!arguments_.stream) return read_csv(file, show, threads, form);
-  return stream_csv(file, {}, show, threads, form);
+  return read_told(file, [&](const Progress& show) {
+    return arguments_.stream ? stream_csv(file, {}, show, threads, form)
+                             : read_csv(file, show, threads, form);
+  });
 }
 
 std::vector<std::string> Verbs::flight_files() const {
@@ -137,6 +138,15 @@ int Verbs::compare() const {
   return 0;
 }
 
+int Verbs::residuals() const {
+  for (const std::string& file : input_files()) check_not_input(arguments_.output, file);
+  OutputFile output(arguments_.output);
+  const auto [calibration, flight] = read_subject();
+  check_known(calibration, flight);
+  deliver_residuals(tabulate_residuals(calibration, flight), arguments_.output, output);
+  return 0;
+}
+
 int Verbs::intervals(ProfileOptions asked) const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, input_files());
   const auto [base, flight] = read_whole_subject();
@@ -195,8 +205,8 @@ int Verbs::apply() const {
       arguments_.stream);
   line.clear();
   tell_notes(applied.notes);
-  print(arguments_.json ? to_json(applied, calibration)
-                        : to_text(applied, calibration, detail_of(arguments_.explain)));
+  give(arguments_.json, to_json(applied, calibration),
+       to_text(applied, calibration, detail_of(arguments_.explain)));
   return 0;
 }
 
@@ -211,8 +221,7 @@ int Verbs::export_to(ExportOptions options) const {
       export_to_file(calibration, flight ? &*flight : nullptr, options, arguments_.output);
   line.clear();
   tell_notes(exported.notes);
-  print(arguments_.json ? to_json(exported, arguments_.output)
-                        : to_text(exported, arguments_.output));
+  give(arguments_.json, to_json(exported, arguments_.output), to_text(exported, arguments_.output));
   return 0;
 }
 
@@ -238,9 +247,9 @@ int Verbs::simulate(SimulationOrder order) const {
   if (arguments_.json) {
     print(simulation.truth);
   } else {
-    print(page("wrote {}: {} rows\n", arguments_.output, simulation.flight.rows()));
+    show(page("wrote {}: {} rows\n", arguments_.output, simulation.flight.rows()));
     if (!arguments_.truth.empty()) {
-      print(page("{} {}: the true parameters\n", given ? "read" : "wrote", arguments_.truth));
+      show(page("{} {}: the true parameters\n", given ? "read" : "wrote", arguments_.truth));
     }
   }
   return 0;
@@ -256,8 +265,8 @@ int Verbs::join() const {
   files::write_flight(joined, output);
   output.commit();
   tell_notes(joined.notes());
-  print(page("wrote {}: {} rows\n", arguments_.output, joined.rows()));
-  print(
+  show(page("wrote {}: {} rows\n", arguments_.output, joined.rows()));
+  show(
       page("next: {} fit {} --effect time_offset estimates what is left between the clocks; add "
            "its tau to --offset\n",
            instrument_.app(), base::file_in_shell(arguments_.output)));
@@ -269,7 +278,7 @@ int Verbs::effects() const {
     print(catalogue_json(instrument_.models()));
     return 0;
   }
-  for (const std::string& model : instrument_.models()) print(catalogue_text(model));
+  for (const std::string& model : instrument_.models()) show(catalogue_text(model));
   return 0;
 }
 

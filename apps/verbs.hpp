@@ -43,6 +43,7 @@ class Verbs {
   int check() const;
   int fit(CalibrationOptions options) const;
   int compare() const;
+  int residuals() const;
   int intervals(ProfileOptions asked) const;
   /// Where it adds, the calibration is the result, and its status goes before the verdict.
   int diagnose(const DiagnoseArguments& asked) const;

@@ -80,17 +80,25 @@ UNITS = ("s", "m/s", "m/s", "m/s", "m/s", "m")
 
 TIMES: dict[str, Callable[[float], str]] = {
     "milliseconds": lambda t: f"{1000 * t:.0f}",
-    "iso": lambda t: (START + datetime.timedelta(seconds=t)).isoformat(timespec="milliseconds") + "Z",
-    "stamp": lambda t: (START + datetime.timedelta(seconds=t)).strftime("%d.%m.%Y %H:%M:%S.%f")[:-3],
-    "american": lambda t: (START + datetime.timedelta(seconds=t)).strftime("%m/%d/%Y %I:%M:%S.%f")[:-3]
-    + (START + datetime.timedelta(seconds=t)).strftime(" %p"),
-    "clock": lambda t: (START + datetime.timedelta(seconds=t)).strftime("%H:%M:%S.%f")[:-3],
-    "epoch": lambda t: f"{(START - datetime.datetime(1970, 1, 1)).total_seconds() + t:.2f}",
-    "epoch ms": lambda t: f"{1000 * ((START - datetime.datetime(1970, 1, 1)).total_seconds() + t):.0f}",
-    "whole seconds": lambda t: f"{np.floor(t + 1e-9):.0f}",
-    "date and clock": lambda t: (START + datetime.timedelta(seconds=t)).strftime("%Y-%m-%d|%H:%M:%S.%f")[
+    "iso": lambda t: (
+        (START + datetime.timedelta(seconds=t)).isoformat(timespec="milliseconds") + "Z"
+    ),
+    "stamp": lambda t: (START + datetime.timedelta(seconds=t)).strftime("%d.%m.%Y %H:%M:%S.%f")[
         :-3
     ],
+    "american": lambda t: (
+        (START + datetime.timedelta(seconds=t)).strftime("%m/%d/%Y %I:%M:%S.%f")[:-3]
+        + (START + datetime.timedelta(seconds=t)).strftime(" %p")
+    ),
+    "clock": lambda t: (START + datetime.timedelta(seconds=t)).strftime("%H:%M:%S.%f")[:-3],
+    "epoch": lambda t: f"{(START - datetime.datetime(1970, 1, 1)).total_seconds() + t:.2f}",
+    "epoch ms": lambda t: (
+        f"{1000 * ((START - datetime.datetime(1970, 1, 1)).total_seconds() + t):.0f}"
+    ),
+    "whole seconds": lambda t: f"{np.floor(t + 1e-9):.0f}",
+    "date and clock": lambda t: (START + datetime.timedelta(seconds=t)).strftime(
+        "%Y-%m-%d|%H:%M:%S.%f"
+    )[:-3],
 }
 
 
@@ -123,7 +131,14 @@ def draw_form(seed: int) -> Form:
         form.time = pick(list(TIMES))
 
     def precede() -> None:
-        lines = ["# Logger v1.2", "Device: ADC-7", "Flight 12, crew of 2", "", "Start;2024-05-03", "%"]
+        lines = [
+            "# Logger v1.2",
+            "Device: ADC-7",
+            "Flight 12, crew of 2",
+            "",
+            "Start;2024-05-03",
+            "%",
+        ]
         form.above = tuple(pick(lines) for _ in range(rng.integers(1, 5)))
 
     def number() -> None:
@@ -156,8 +171,23 @@ def draw_form(seed: int) -> Form:
     def units() -> None:
         form.units_row = pick(["after", "before", "toa5"])
 
-    changes = [delimit, quote, name, clock, precede, number, trail, finish, interrupt, encode,
-               end_lines, pack, describe, unit, units]
+    changes = [
+        delimit,
+        quote,
+        name,
+        clock,
+        precede,
+        number,
+        trail,
+        finish,
+        interrupt,
+        encode,
+        end_lines,
+        pack,
+        describe,
+        unit,
+        units,
+    ]
     chosen = rng.choice(len(changes), size=int(rng.integers(1, 6)), replace=False)
     for change in sorted(int(i) for i in chosen):
         changes[change]()

@@ -14,7 +14,16 @@ import sepcal
 from benchmarks.race import Competitor, Result, judge, lengths_within, race
 
 ROWS = (300_000,)
-HEADERS = ("time_s", "vn_mps", "ve_mps", "vd_mps", "airspeed_mps", "altitude_m", "temp_degc", "p_pa")
+HEADERS = (
+    "time_s",
+    "vn_mps",
+    "ve_mps",
+    "vd_mps",
+    "airspeed_mps",
+    "altitude_m",
+    "temp_degc",
+    "p_pa",
+)
 
 
 def clock(seconds: float) -> str:

@@ -17,6 +17,7 @@ from typing import NoReturn
 
 from sepcal import _core
 from sepcal import own_commands as own
+from sepcal.command_tables import table_of
 from sepcal.geomagnetism import command as field
 from sepcal.logs import command as log
 from sepcal.printing import in_line, tell
@@ -74,19 +75,29 @@ def is_of_own_model(words: Sequence[str]) -> bool:
 def run_native(words: Sequence[str]) -> int:
     """What needs no Python beside the readers of logs."""
     sys.stdout.flush()
+    tables = []
+    if words and words[0] in ("completion", "manual"):
+        choices = make_parser()[1].choices
+        tables = [table_of(name, choices[name]) for name in NAMES]
     try:
         with reading_for(SUBJECTS.get(words[0], "") if words else ""):
-            return _core.run_sepcal([os.fsencode(word) for word in words])
+            return _core.run_sepcal([os.fsencode(word) for word in words], tables)
     except ImportError as error:  # the aircraft's module was not built
         return refuse(f"sepcal: {error}")
 
 
-def run_here(words: Sequence[str]) -> int:
-    """A command of the package alone."""
+def make_parser() -> tuple[Parser, own.Commands[argparse.ArgumentParser]]:
+    """The parser of the package's own commands, and these by name."""
     parser = Parser(prog="sepcal")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     for command in COMMANDS:
         command.add_to(commands)
+    return parser, commands
+
+
+def run_here(words: Sequence[str]) -> int:
+    """A command of the package alone."""
+    parser, _ = make_parser()
     asked = "sepcal"
     try:
         try:

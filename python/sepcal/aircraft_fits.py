@@ -122,6 +122,23 @@ class AircraftFit(Fit):
         """
         return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core), self.noise)
 
+    def residuals(
+        self, flight: AnyFlight | Sequence[AnyFlight] | None = None
+    ) -> dict[str, Array | list[str]]:
+        """What the model leaves on a flight, row by row, as `sepcal aircraft residuals` writes it.
+
+        Arrays by header, of shape (rows,), rows being the flight's: time_s, and of each output
+        what was measured and modelled and the residual in its unit, ax_residual_mps2, and
+        ax_whitened, the residual over the standard deviation of its noise; NaN in rows that were
+        not used, of which `why_not` tells why, and is "" of the others.
+
+        Raises:
+            Error: As in compare().
+        """
+        chosen = self._or_fitted(flight, "residuals(")
+        columns, why_not = self.core.residuals(chosen._core)
+        return {**dict(columns), "why_not": why_not}
+
     @overload
     def diagnose(
         self,

@@ -154,6 +154,23 @@ class Calibration(Fit):
         core, chosen = self._on(flight, "compare(", known=True)
         return Comparison(core.compare(chosen._core), self.noise)
 
+    def residuals(
+        self, flight: AnyFlight | Sequence[AnyFlight] | None = None
+    ) -> dict[str, Array | list[str]]:
+        """What the model leaves on a flight, row by row, as `sepcal mag residuals` writes it.
+
+        Arrays by header, of shape (rows,), rows being the flight's: time_s, and of each output
+        what was measured and modelled and the residual in its unit, mx_residual_ut, and
+        mx_whitened, the residual over the standard deviation of its noise; NaN in rows that were
+        not used, of which `why_not` tells why, and is "" of the others.
+
+        Raises:
+            Error: As in compare().
+        """
+        core, chosen = self._on(flight, "residuals(", known=True)
+        columns, why_not = core.residuals(chosen._core)
+        return {**dict(columns), "why_not": why_not}
+
     @overload
     def diagnose(
         self,

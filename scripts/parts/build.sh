@@ -69,5 +69,5 @@ build_dev() {
 # The apps and the Python module alone. A build folder that has the tests keeps them for later.
 build_demo() {
   configure_with_python demo build
-  build build sepcal-pitot sepcal-mag _core
+  build build sepcal_program sepcal-pitot sepcal-mag _core
 }

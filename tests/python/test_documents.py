@@ -24,6 +24,7 @@ AIRCRAFT = (
     "fit",
     "two-step",
     "compare",
+    "residuals",
     "diagnose",
     "add",
     "apply",
@@ -35,6 +36,7 @@ VERBS = (
     "check",
     "fit",
     "compare",
+    "residuals",
     "intervals",
     "diagnose",
     "add",
@@ -179,11 +181,10 @@ def test_every_verb_in_the_documents_is_in_the_help():
     for app, verb in commands:
         assert re.search(rf"^  {verb} ", help_text[app], re.M), f"{app} {verb}"
     explained = set(re.findall(r"^\| `([a-z]+)", read("commands.md"), re.M))
-    listed = re.findall(r"^  ([a-z]+)  ", help_text["sepcal-pitot"].split("Subcommands:")[1], re.M)
+    verbs = {app: text.split("Verbs (each with --help):")[1] for app, text in help_text.items()}
+    listed = re.findall(r"^  ([a-z]+)  ", verbs["sepcal-pitot"], re.M)
     assert set(listed) == set(VERBS) <= explained
-    listed = re.findall(
-        r"^  ([a-z-]+)  ", help_text["sepcal-aircraft"].split("Subcommands:")[1], re.M
-    )
+    listed = re.findall(r"^  ([a-z-]+)  ", verbs["sepcal-aircraft"], re.M)
     assert set(listed) == set(AIRCRAFT)
     assert set(AIRCRAFT) <= set(re.findall(r"^\| `([a-z-]+)", read("aircraft.md"), re.M))
 

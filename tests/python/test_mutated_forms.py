@@ -4,9 +4,9 @@
 from pathlib import Path
 
 import pytest
-from mutated_forms import TRUTH, Form, draw_form, fly, write
 
 import sepcal
+from mutated_forms import TRUTH, Form, draw_form, fly, write
 
 FORMS = 300
 

@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "released.hpp"
+#include "residual_columns.hpp"
 #include "results.hpp"
 #include "sepcal/detail/aircraft/coefficients.hpp"
 #include "sepcal/detail/flight/aircraft_file.hpp"
@@ -119,6 +120,16 @@ std::pair<Tracked, std::vector<std::string>> track_on(
 
 DiagnosisOptions with_threads_of(const AircraftFit& fitted, const DiagnosisOptions& asked) {
   return with_threads(asked, fitted.options.calibration.fit.threads);
+}
+
+ResidualColumns residuals_on(const AircraftFit& fitted, const Flight& flight) {
+  ResidualTable table;
+  {
+    const Released released;
+    table = tabulate_residuals(compare_aircraft(fitted, flight), flight,
+                               fitted.options.calibration.log, fitted.fit.noise);
+  }
+  return residual_columns(std::move(table));
 }
 
 Diagnosed diagnose_on(const AircraftFit& fitted, const Flight& flight, const Injected& injected,
@@ -233,6 +244,7 @@ void define_fits(py::module_& module) {
             return compared(compare_aircraft(self, flight));
           },
           WithoutGil())
+      .def("residuals", &residuals_on)
       .def("diagnose", &diagnose_on)
       .def("intervals", &intervals_on)
       .def("diagnose_stepwise", &diagnose_stepwise_on)

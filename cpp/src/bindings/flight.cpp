@@ -11,6 +11,7 @@
 #include "bindings.hpp"
 #include "python_effect.hpp"
 #include "released.hpp"
+#include "residual_columns.hpp"
 #include "results.hpp"
 #include "sepcal/detail/flight/certified.hpp"
 #include "sepcal/detail/flight/joint.hpp"
@@ -155,6 +156,16 @@ void define_flights(py::module_& module) {
         return stream_csv(file, folder, {}, 0, {std::move(delimiter), std::move(decimal)});
       },
       "file"_a, "folder"_a = "", "delimiter"_a = "", "decimal"_a = "", WithoutGil());
+}
+
+ResidualColumns residuals_on(const Calibration& calibration, const Flight& flight) {
+  ResidualTable table;
+  {
+    const Released released;
+    need_own_effects(calibration);
+    table = tabulate_residuals(calibration, flight);
+  }
+  return residual_columns(std::move(table));
 }
 
 /// With an effect added where one is named.
@@ -384,6 +395,7 @@ void define_calibration(py::module_& module) {
       .def("on_flight", &on_flight)
       .def("rejoin", &rejoin, WithoutGil())
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })
+      .def("residuals", &residuals_on, "flight"_a)
       .def("compare", &compare_flight, "flight"_a, "effect"_a = std::nullopt)
       .def("diagnose", &diagnose_on)
       .def("diagnose_stepwise", &diagnose_stepwise_on)

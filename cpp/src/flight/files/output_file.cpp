@@ -52,6 +52,12 @@ int open_nameless(const std::filesystem::path& folder) {
 OutputFile::OutputFile(std::filesystem::path target)
     : named_(std::move(target)), target_(follow_links(named_)), stream_(this) {
   pending_.reserve(buffer_size);
+  if (named_ == "/dev/stdout") {  // after what is there, and not in the place of a file behind it
+    direct_ = true;
+    descriptor_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (descriptor_ < 0) fail("can't be written", errno);
+    return;
+  }
   struct stat old{};
   if (::stat(named_.c_str(), &old) != 0) {
     if (errno == ELOOP) fail("is a loop of symbolic links; name a file", 0);
