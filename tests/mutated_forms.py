@@ -78,27 +78,28 @@ HEADS: dict[str, tuple[str, ...]] = {
 }
 UNITS = ("s", "m/s", "m/s", "m/s", "m/s", "m")
 
+
+def stamp(t: float, pattern: str) -> str:
+    """The moment, to the millisecond where the pattern ends in %f."""
+    text = (START + datetime.timedelta(seconds=t)).strftime(pattern)
+    return text[:-3] if pattern.endswith("%f") else text
+
+
+def since_1970(t: float) -> float:
+    """[s]."""
+    return (START - datetime.datetime(1970, 1, 1)).total_seconds() + t
+
+
 TIMES: dict[str, Callable[[float], str]] = {
     "milliseconds": lambda t: f"{1000 * t:.0f}",
-    "iso": lambda t: (
-        (START + datetime.timedelta(seconds=t)).isoformat(timespec="milliseconds") + "Z"
-    ),
-    "stamp": lambda t: (START + datetime.timedelta(seconds=t)).strftime("%d.%m.%Y %H:%M:%S.%f")[
-        :-3
-    ],
-    "american": lambda t: (
-        (START + datetime.timedelta(seconds=t)).strftime("%m/%d/%Y %I:%M:%S.%f")[:-3]
-        + (START + datetime.timedelta(seconds=t)).strftime(" %p")
-    ),
-    "clock": lambda t: (START + datetime.timedelta(seconds=t)).strftime("%H:%M:%S.%f")[:-3],
-    "epoch": lambda t: f"{(START - datetime.datetime(1970, 1, 1)).total_seconds() + t:.2f}",
-    "epoch ms": lambda t: (
-        f"{1000 * ((START - datetime.datetime(1970, 1, 1)).total_seconds() + t):.0f}"
-    ),
+    "iso": lambda t: stamp(t, "%Y-%m-%dT%H:%M:%S.%f") + "Z",
+    "stamp": lambda t: stamp(t, "%d.%m.%Y %H:%M:%S.%f"),
+    "american": lambda t: stamp(t, "%m/%d/%Y %I:%M:%S.%f") + stamp(t, " %p"),
+    "clock": lambda t: stamp(t, "%H:%M:%S.%f"),
+    "epoch": lambda t: f"{since_1970(t):.2f}",
+    "epoch ms": lambda t: f"{1000 * since_1970(t):.0f}",
     "whole seconds": lambda t: f"{np.floor(t + 1e-9):.0f}",
-    "date and clock": lambda t: (START + datetime.timedelta(seconds=t)).strftime(
-        "%Y-%m-%d|%H:%M:%S.%f"
-    )[:-3],
+    "date and clock": lambda t: stamp(t, "%Y-%m-%d|%H:%M:%S.%f"),
 }
 
 

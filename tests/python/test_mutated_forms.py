@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A flight in 300 forms of the world: each gives the plain file's answer, and says what was read how."""
+"""A flight in 300 forms of the world: each gives the plain file's answer, and says how it is read."""
 
 from pathlib import Path
 
