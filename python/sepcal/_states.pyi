@@ -206,6 +206,9 @@ class Fit:
         arg1: typing.SupportsFloat | typing.SupportsIndex,
         arg2: collections.abc.Sequence[str],
     ) -> sepcal._core.Intervals: ...
+    def residuals(
+        self, arg0: sepcal._core.Flight
+    ) -> tuple[list[tuple[str, numpy.typing.NDArray[numpy.float64]]], list[str]]: ...
     def save(self, arg0: str) -> None: ...
     def smooth(
         self,

@@ -83,7 +83,7 @@ class FitOptions(TypedDict, total=False):
         decimal: The file's decimal mark, where it can be read in two ways: '.' or ',' [as the file
             shows].
         join: Brings quantities that are logged at other times to the rows of the measured one:
-            linear or held [they stand in one row].
+            smooth, linear or held [they stand in one row].
     """
 
     effects: Sequence[str | Effect] | None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A flight in 300 forms of the world: each gives the plain file's answer, and says how it is read."""
+"""A flight in 300 forms of the world gives the plain answer, with a note of the form."""
 
 from pathlib import Path
 
