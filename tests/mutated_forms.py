@@ -26,7 +26,7 @@ def fly() -> Table:
     time = STEP * np.arange(ROWS)
     heading = 0.12 * time
     speed = np.where(time < time[-1] / 2, 18.0, 26.0)
-    read = (speed - TRUTH["c_va"]) / TRUTH["s_va"] + 0.1 * rng.standard_normal(ROWS)
+    read = TRUTH["s_va"] * speed + TRUTH["c_va"] + 0.1 * rng.standard_normal(ROWS)
     return {
         "time_s": time,
         "vn_mps": speed * np.cos(heading) + TRUTH["w_n"],

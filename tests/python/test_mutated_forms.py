@@ -23,7 +23,7 @@ def fit(file: Path):
 def test_the_plain_file_gives_the_truth_without_a_note(plain, tmp_path):
     assert sepcal.read_csv(write(tmp_path, Form())).notes == []
     for name, truth in TRUTH.items():
-        assert abs(plain.parameters[name] - truth) < 4 * plain.standard_errors[name], name
+        assert abs(plain[name].value - truth) < 4 * plain[name].standard_error, name
 
 
 @pytest.mark.parametrize("seed", range(FORMS))
@@ -37,5 +37,5 @@ def test_a_form_is_read_as_a_person_reads_it(seed, plain, tmp_path):
     assert flight.rows in (len(fly()["time_s"]) - lost, len(fly()["time_s"])), form
     for name in TRUTH:
         # A row less moves an answer by a few hundredths of its error; time in other digits by less.
-        allowed = (0.3 if lost else 1e-6) * plain.standard_errors[name]
-        assert abs(result.parameters[name] - plain.parameters[name]) <= allowed, (form, name)
+        allowed = (0.3 if lost else 1e-6) * plain[name].standard_error
+        assert abs(result[name].value - plain[name].value) <= allowed, (form, name)
