@@ -86,9 +86,9 @@ def run_native(words: Sequence[str]) -> int:
         return refuse(f"sepcal: {error}")
 
 
-def make_parser() -> tuple[Parser, own.Commands[argparse.ArgumentParser]]:
+def make_parser() -> tuple[argparse.ArgumentParser, own.Commands[argparse.ArgumentParser]]:
     """The parser of the package's own commands, and these by name."""
-    parser = Parser(prog="sepcal")
+    parser: argparse.ArgumentParser = Parser(prog="sepcal")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     for command in COMMANDS:
         command.add_to(commands)
