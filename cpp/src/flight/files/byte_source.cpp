@@ -188,7 +188,7 @@ class Utf16Bytes final : public Unpacked {
   std::size_t pull(char* to, std::size_t most) override {
     std::size_t count = 0;
     while (count + 2 * longest <= most && refill()) {
-      const auto byte = static_cast<unsigned char>(*at());
+      const unsigned byte = static_cast<unsigned char>(*at());
       take(1);
       if (!half_) {
         half_ = byte;

@@ -149,14 +149,15 @@ double SlowColumn::prediction_error(double width) const {
   return count == 0 ? infinity : sum / static_cast<double>(count);
 }
 
-/// The narrowest that predicts about as well as the best.
+/// The widest that predicts about as well as the best: the less noise a parabola keeps, the less its
+/// slope's is taken for what a shift in time would do.
 void SlowColumn::choose_width() {
   std::array<double, widths.size()> errors{};
   std::ranges::transform(widths, errors.begin(),
                          [this](double w) { return prediction_error(w * interval_); });
   const double best = std::ranges::min(errors);
-  std::size_t chosen = 0;
-  while (chosen + 1 < widths.size() && !(errors[chosen] <= as_good * best)) ++chosen;
+  std::size_t chosen = widths.size() - 1;
+  while (chosen > 0 && !(errors[chosen] <= as_good * best)) --chosen;
   width_ = widths[chosen] * interval_;
 }
 

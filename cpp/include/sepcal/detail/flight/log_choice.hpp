@@ -43,7 +43,7 @@ struct LogChoice {
   std::string decimal = {};
 
   /// How quantities that are logged at other times than those of the measured one come to its rows:
-  /// "linear" or "held"; empty: they must stand in one row.
+  /// "smooth", "linear" or "held"; empty: they must stand in one row.
   std::string join = {};
 
   /// What of it says how to read the file.
