@@ -308,7 +308,7 @@ def test_bad_input_is_one_line(
     refuse(lambda: sepcal.RigidAircraft(aircraft, "yaw"), "there are no axes 'yaw'")
     refuse(
         lambda: sepcal.fit(sepcal.Aero(aircraft), {"ax": [1.0]}),
-        "flight: column 'ax' has no known unit",
+        "flight: column 'time_s' is missing",
     )
     refuse(
         lambda: sepcal.fit(sepcal.FlightPath(position=True), flight),

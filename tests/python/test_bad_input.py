@@ -134,7 +134,7 @@ def test_files_that_are_no_logs(tmp_path: Path) -> None:
     refuse(lambda: sepcal.read_csv(tmp_path / "none.csv"), "none.csv", "no such file")
     refuse(lambda: sepcal.read_csv(tmp_path), str(tmp_path))
     broken = tmp_path / "broken.csv"
-    broken.write_text("time_s,pt_pa\n1,2\n3\n")
+    broken.write_text('time_s,pt_pa\n1,2\n"3,4\n5,6\n')
     refuse(lambda: sepcal.read_csv(broken), "broken.csv line 3")
 
 

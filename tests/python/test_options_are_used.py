@@ -33,6 +33,9 @@ NATURE = {
     "map": "of a column that this fit does not take",
     "ignore": "the same",
     "drop_repeats": "no reading repeats",
+    "delimiter": "the flight is not of a file",
+    "decimal": "the same",
+    "join": "all readings stand in one row",
 }
 # What is taken and not looked at, and why it is not refused.
 KNOWN = {
@@ -140,6 +143,9 @@ def _given(parameter: str, output: str, effect: str, fit: sepcal.Fit) -> dict[st
         "where": "time_s > 3",
         "from_time": 3.0,
         "to_time": 7.5,
+        "delimiter": ";",
+        "decimal": ",",
+        "join": "linear",
     }
 
 
