@@ -75,6 +75,13 @@ std::string first_file(const std::vector<std::string>& words) {
 int run_guessed(const std::vector<NamedProgram>& programs, int argc, char** argv) {
   const std::string verb = argv[0];
   const std::string called = "sepcal " + verb;
+  const auto asks_for_help = [](std::string_view word) { return word == "-h" || word == "--help"; };
+  if (std::any_of(argv + 1, argv + argc, asks_for_help)) {  // every instrument's is the same
+    const auto pitot = std::ranges::find(programs, std::string("pitot"), &NamedProgram::name);
+    std::vector<char*> asked{argv[0]};
+    asked.insert(asked.end(), argv, argv + argc);
+    return pitot->run("sepcal pitot", static_cast<int>(asked.size()), asked.data());
+  }
   const std::string file = first_file({argv + 1, argv + argc});
   if (file.empty()) {
     return refuse(

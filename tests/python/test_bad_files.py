@@ -57,24 +57,30 @@ def open_quote(log: Log) -> str:
 
 
 NO_TABLES: dict[str, tuple[Callable[[Log], str | bytes], tuple[str, ...]]] = {
-    "duplicate column": (spoil_header, ("line 1", "'roll_rad' is there twice", "delete one")),
-    "column without a name": (blank_header, ("line 1", "has no name", "name it")),
-    "short row": (shorten_row, ("line 7", "cells, but the header has", "complete the row")),
-    "long row": (lengthen_row, ("line 7", "cells, but the header has", "quote a cell")),
-    "decimal comma": (write_decimal_comma, ("line 7", "a point in decimals")),
-    "blank line": (insert_blank_line, ("line 7", "blank", "delete it")),
     "open quote": (open_quote, ("line 7", "never closed", "ends on its line")),
-    "semicolons": (lambda log: log.text(";"), ("line 1", "semicolons", "with commas")),
-    "tabs": (lambda log: log.text("\t"), ("line 1", "tabs", "with commas")),
     "binary": (lambda log: b"\x89PNG\r\n\x1a\n" + bytes(range(256)), ("line 1", "CSV file?")),
     "binary amid text": (
         lambda log: log.text().encode()[:-40] + b"\x00\xff" + log.text().encode()[-40:],
         ("line ", "byte 0x00", "CSV file?"),
     ),
     "no line end": (lambda log: b"x" * (2 << 20), ("line 1", "longer than 1 MiB", "CSV file?")),
-    "UTF-16": (lambda log: log.text().encode("utf-16"), ("line 1", "no UTF-8", "CSV file?")),
     "empty": (lambda log: "", ("empty", "name the columns")),
     "header only": (lambda log: log.text().splitlines()[0] + "\n", ("header", "no row of data")),
+}
+# Read with a note, which says how.
+ODD_TABLES: dict[str, tuple[Callable[[Log], str | bytes], str]] = {
+    "column without a name": (blank_header, "a column without a name is column_"),
+    "blank line": (insert_blank_line, "line 7 is blank and is passed"),
+    "semicolons": (lambda log: log.text(";"), "semicolons part the columns"),
+    "tabs": (lambda log: log.text("\t"), "tabs part the columns"),
+    "UTF-16": (lambda log: log.text().encode("utf-16"), "the text is UTF-16"),
+}
+# Refused by a fit, at the row that has no values.
+BROKEN_ROWS: dict[str, tuple[Callable[[Log], str], tuple[str, ...]]] = {
+    "short row": (shorten_row, ("line 7", "cells in a row of", "--drop-invalid")),
+    "long row": (lengthen_row, ("line 7", "cells in a row of", "--drop-invalid")),
+    "decimal comma": (write_decimal_comma, ("line 7", "cells in a row of", "--drop-invalid")),
+    "duplicate column": (spoil_header, ("'roll_rad' is missing", "roll_rad.1")),
 }
 
 
@@ -85,6 +91,26 @@ def test_no_table(bench: Bench, kind: str):
     data = spoilt if isinstance(spoilt, bytes) else spoilt.encode()
     (bench.folder / "spoilt.csv").write_bytes(data)
     assert_log_refused(bench, "spoilt.csv", "spoilt.csv", *words)
+
+
+@pytest.mark.parametrize("kind", ODD_TABLES)
+def test_an_odd_table_is_read_with_a_note(bench: Bench, kind: str):
+    spoil, note = ODD_TABLES[kind]
+    spoilt = spoil(bench.read_log())
+    data = spoilt if isinstance(spoilt, bytes) else spoilt.encode()
+    (bench.folder / "odd.csv").write_bytes(data)
+    result = bench.run("fit", "odd.csv", *bench.options)
+    assert result.code == 0
+    assert note in result.err
+
+
+@pytest.mark.parametrize("kind", BROKEN_ROWS)
+def test_a_broken_row_is_refused_and_its_way_out_works(bench: Bench, kind: str):
+    spoil, words = BROKEN_ROWS[kind]
+    (bench.folder / "spoilt.csv").write_text(spoil(bench.read_log()))
+    assert_refused(bench, "fit", "spoilt.csv", *bench.options, words=words)
+    if "--drop-invalid" in words:
+        assert bench.run("fit", "spoilt.csv", *bench.options, "--drop-invalid").code == 0
 
 
 def test_no_such_file(bench: Bench):

@@ -35,6 +35,9 @@ std::optional<double> parse_number(std::string_view text);
 struct CsvForm {
   std::string delimiter = {};  // ",", ";", "|", "tab" or "space"
   std::string decimal = {};    // "." or ","
+
+  /// Columns, as the file names them, that a choice renames: of none the unit of time is guessed.
+  std::vector<std::string> mapped = {};
 };
 
 /// Rows of cells, in the file's order. It finds out how the table is written and says so in

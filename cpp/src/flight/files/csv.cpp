@@ -38,6 +38,8 @@ CsvReader::CsvReader(std::string file, Progress progress, const CsvForm& form)
     throw files::ForeignFile(file_, std::move(*foreign));
   }
   form_ = std::make_unique<files::TableForm>(files::recognise_table(file_, lines_->peek(), form));
+  const bool is_empty = form_->columns.empty() && form_->cells > 0;
+  if (is_empty) throw Error(file_ + ": no column has a name or a value; is this a CSV file?");
   for (const files::ColumnForm& column : form_->columns) {
     header_.push_back(column.header);
     logged_.push_back(column.logged);

@@ -147,6 +147,7 @@ constexpr std::array other_quantities{
     OtherName{"vu", "vario", 2},
     OtherName{"gs", "gndspd"},  // Garmin
     OtherName{"gs", "groundspeed"},
+    OtherName{"gs", "gndspeed"},
     OtherName{"gs", "sog"},
     OtherName{"gs", "gsp"},  // IGC
     OtherName{"gs", "gpsspeed"},
@@ -223,6 +224,9 @@ constexpr std::array other_quantities{
     OtherName{"beta", "sideslip"},
     OtherName{"beta", "sideslipangle"},
     OtherName{"mx", "magx"},
+    OtherName{"mx", "bx"},
+    OtherName{"my", "by"},
+    OtherName{"mz", "bz"},
     OtherName{"my", "magy"},
     OtherName{"mz", "magz"},
     OtherName{"mx", "magfieldx"},
@@ -252,6 +256,11 @@ constexpr std::array other_units{
     OtherName{"kmh", "kph"},
     OtherName{"kmh", "kmph"},
     OtherName{"mps", "ms1"},
+    OtherName{"mps", "meterssecond"},
+    OtherName{"mps", "msec"},
+    OtherName{"mps", "meterpersecond"},
+    OtherName{"mps", "meterspersecond"},
+    OtherName{"kmh", "kmhr"},
     OtherName{"ftps", "fps"},
     OtherName{"fpm", "ftmin"},
     OtherName{"fpm", "ftpm"},
@@ -261,6 +270,7 @@ constexpr std::array other_units{
     OtherName{"rad", "radian"},
     OtherName{"rad", "radians"},
     OtherName{"deg", "degs"},
+    OtherName{"deg", "degt"},  // from true north
     OtherName{"deg", "degree"},
     OtherName{"deg", "degrees"},
     OtherName{"radps", "rads1"},
@@ -295,6 +305,8 @@ constexpr std::array other_units{
     OtherName{"degf", "fahrenheit"},
     OtherName{"k", "kelvin"},
     OtherName{"gauss", "g"},
+    OtherName{"gauss", "oe"},  // in air
+    OtherName{"gauss", "oersted"},
     OtherName{"gauss", "gs"},
     OtherName{"mgauss", "mg"},
     OtherName{"mgauss", "milligauss"},

@@ -10,7 +10,8 @@
 namespace sepcal::files {
 namespace {
 
-constexpr std::string_view minus = "\xE2\x88\x92";  // U+2212
+constexpr std::array<std::string_view, 2> minuses{"\xE2\x88\x92",
+                                                  "\xE2\x80\x93"};  // U+2212, U+2013
 constexpr std::array<std::string_view, 3> wide_blanks{"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -21,10 +22,12 @@ std::string in_ascii(std::string_view cell) {
   while (!cell.empty()) {
     const auto blank = std::ranges::find_if(
         wide_blanks, [&](std::string_view wide) { return cell.starts_with(wide); });
+    const auto minus = std::ranges::find_if(
+        minuses, [&](std::string_view sign) { return cell.starts_with(sign); });
     const bool is_blank = blank != wide_blanks.end();
-    const bool is_minus = cell.starts_with(minus);
+    const bool is_minus = minus != minuses.end();
     text += is_blank ? ' ' : is_minus ? '-' : cell.front();
-    cell.remove_prefix(is_blank ? blank->size() : is_minus ? minus.size() : 1);
+    cell.remove_prefix(is_blank ? blank->size() : is_minus ? minus->size() : 1);
   }
   return text;
 }
@@ -32,7 +35,16 @@ std::string in_ascii(std::string_view cell) {
 /// What stands between a sign and an exponent.
 std::string_view mantissa_of(std::string_view text) {
   if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
-  return text.substr(0, text.find_first_of("eE"));
+  return text.substr(0, text.find_first_of("eEdD"));
+}
+
+/// With an e where the exponent of Fortran stands.
+std::string with_e(std::string text) {
+  const std::size_t mark = text.find_first_of("dD");
+  const bool is_exponent = mark != std::string::npos && mark > 0 && mark + 1 < text.size() &&
+                           (is_digit(text[mark - 1]) || text[mark - 1] == '.');
+  if (is_exponent) text[mark] = 'e';
+  return text;
 }
 
 /// Whether `mark` parts digits into a group of one to three and groups of three.
@@ -59,6 +71,7 @@ NumberLook look_at_number(std::string_view cell) {
   if (parse_number(cell)) return {.is_number = true};
   const std::string text = in_ascii(cell);
   NumberLook look;
+  look.is_odd = text != cell || text.find_first_of("dD") != std::string::npos;
   std::string digits(mantissa_of(text));
   if (digits.empty() || !std::ranges::all_of(digits, [](char c) {
         return is_digit(c) || c == '.' || c == ',' || c == '\'' || c == ' ';
@@ -97,9 +110,11 @@ std::optional<double> parse_number_as(std::string_view cell, char decimal,
                                       std::string_view groups) {
   if (decimal == '.' && groups.empty()) {
     const auto number = parse_number(cell);
-    if (number || cell.find(minus.front()) == std::string_view::npos) return number;
+    const bool is_odd = cell.find('\xE2') != std::string_view::npos ||
+                        cell.find_first_of("dD") != std::string_view::npos;
+    if (number || !is_odd) return number;
   }
-  std::string text = without(in_ascii(cell), groups);
+  std::string text = with_e(without(in_ascii(cell), groups));
   if (decimal == ',') {
     if (text.find('.') != std::string::npos) return std::nullopt;
     std::ranges::replace(text, ',', '.');

@@ -13,12 +13,14 @@ struct NumberLook {
   bool is_number = false;
   bool decimal_comma = false;  // "14,2"
   bool either = false;         // "14,200": a decimal comma or a group of thousands
+  bool is_odd = false;         // with another sign of minus, or "1.0D+02" of Fortran
   std::string groups = {};     // marks that group digits for sure: "," of "1,234,567"
 };
 
 NumberLook look_at_number(std::string_view cell);
 
-/// The finite number that `cell` is under these marks; as parse_number() where they are "." and "".
+/// The finite number that `cell` is under these marks; as parse_number() where they are "." and "",
+/// but with an exponent behind D too.
 std::optional<double> parse_number_as(std::string_view cell, char decimal, std::string_view groups);
 
 /// "2.50": 2, "7": 0; -1 of what is no number.

@@ -21,8 +21,11 @@
 namespace sepcal::files {
 namespace {
 
-constexpr std::size_t most_lines = 200;   // that are looked at
-constexpr std::size_t most_cells = 4000;  // of a row
+constexpr std::size_t most_lines = 200;     // that are looked at first
+constexpr std::size_t most_above = 20'000;  // lines among which the rows begin
+constexpr std::size_t most_later = 200;     // rows that show how numbers are written farther on
+constexpr std::size_t most_cells = 4000;    // of a row
+constexpr std::size_t longest_value = 64;   // characters of a number or a time
 
 struct Delimiter {
   char mark;
@@ -37,9 +40,9 @@ constexpr std::array delimiters{
     Delimiter{' ', "space", "blanks"},
 };
 
-std::vector<std::string_view> split_lines(std::string_view text) {
+std::vector<std::string_view> split_lines(std::string_view text, std::size_t most) {
   std::vector<std::string_view> lines;
-  while (!text.empty() && lines.size() < most_lines) {
+  while (!text.empty() && lines.size() < most) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     while (line.ends_with('\r')) line.remove_suffix(1);
@@ -62,7 +65,10 @@ bool is_missing(std::string_view cell) {
 std::size_t find_suffix(std::string_view cell) {
   constexpr std::size_t longest = 8;
   const std::size_t digits = cell.find_last_of("0123456789");
-  if (digits == std::string_view::npos || cell.find_first_of("0123456789+-.,") != 0) return digits;
+  if (digits == std::string_view::npos || cell.size() > longest_value ||
+      cell.find_first_of("0123456789+-.,") != 0) {
+    return std::string_view::npos;
+  }
   for (std::size_t end = std::min(cell.size() - 1, digits); end > 0; --end) {
     const std::string_view number = cell.substr(0, end + 1);
     if (!look_at_number(number).is_number) continue;
@@ -74,6 +80,7 @@ std::size_t find_suffix(std::string_view cell) {
 }
 
 bool is_value(std::string_view cell) {
+  if (cell.size() > longest_value) return parse_number(cell).has_value();
   return look_at_number(cell).is_number || is_time_text(cell) ||
          find_suffix(cell) != std::string_view::npos;
 }
@@ -133,7 +140,7 @@ std::string_view without_mark(std::string_view line) {
 }
 
 /// Layout::head_fits.
-int fit_head(const std::vector<std::string_view>& lines, const Layout& layout,
+int fit_head(std::span<const std::string_view> lines, const Layout& layout,
              std::deque<std::string>& texts) {
   if (layout.cells < 2) return 1;
   for (std::size_t i = layout.first_row; i > 0; --i) {
@@ -146,7 +153,7 @@ int fit_head(const std::vector<std::string_view>& lines, const Layout& layout,
 }
 
 /// The rows begin at the first line like one that is followed by others as long.
-Layout lay_out(const std::vector<std::string_view>& lines, const Delimiter& by,
+Layout lay_out(std::span<const std::string_view> lines, const Delimiter& by,
                std::deque<std::string>& texts) {
   Layout layout;
   layout.by = &by;
@@ -218,9 +225,9 @@ const Delimiter& find_commonest(std::string_view line) {
 class Recogniser {
  public:
   Recogniser(const std::string& file, std::string_view text, const CsvForm& asked)
-      : file_(file), asked_(asked), lines_(split_lines(text)) {
+      : file_(file), asked_(asked), all_(split_lines(text, most_above)) {
     // A line that ends with the file may be cut.
-    if (!text.ends_with('\n') && lines_.size() > 2) lines_.pop_back();
+    if (!text.ends_with('\n') && all_.size() > 2) all_.pop_back();
   }
 
   TableForm recognise() {
@@ -229,7 +236,7 @@ class Recogniser {
     read_head();
     name_columns();
     find_suffixes();
-    find_time(form_, rows_);
+    find_time(form_, rows_, asked_.mapped);
     number_decimals();
     return std::move(form_);
   }
@@ -237,15 +244,20 @@ class Recogniser {
  private:
   void choose_layout() {
     std::string asked = asked_.delimiter;
-    if (!lines_.empty() && asked.empty()) {
-      asked = find_sep(lines_.front());
-      if (!asked.empty()) lines_.front() = {};  // it is read
+    if (!all_.empty() && asked.empty()) {
+      asked = find_sep(all_.front());
+      if (!asked.empty()) all_.front() = {};  // it is read
     }
     const Delimiter* const only = find_delimiter(asked);
-    for (const Delimiter& by : delimiters) {
-      if (only != nullptr && only != &by) continue;
-      Layout tried = lay_out(lines_, by, texts_);
-      if (layout_.by == nullptr || tried.is_better_than(layout_)) layout_ = std::move(tried);
+    for (std::size_t most = most_lines; layout_.cells == 0 && lines_.size() < all_.size();
+         most *= 10) {
+      lines_ = std::span(all_).first(std::min(most, all_.size()));
+      layout_ = {};
+      for (const Delimiter& by : delimiters) {
+        if (only != nullptr && only != &by) continue;
+        Layout tried = lay_out(lines_, by, texts_);
+        if (layout_.by == nullptr || tried.is_better_than(layout_)) layout_ = std::move(tried);
+      }
     }
     if (layout_.cells == 0) lay_out_text(only);
     form_.delimiter = layout_.by->mark;
@@ -255,6 +267,11 @@ class Recogniser {
       if (cells.size() == layout_.cells || cells.size() == layout_.cells + 1) {
         rows_.push_back(cells);
       }
+    }
+    const std::size_t step = std::max<std::size_t>(1, (all_.size() - lines_.size()) / most_later);
+    for (std::size_t i = lines_.size(); i < all_.size(); i += step) {
+      auto cells = cut(all_[i], form_.delimiter, texts_);
+      if (cells.size() == layout_.cells) later_.push_back(std::move(cells));
     }
     if (form_.delimiter != ',' && layout_.cells > 1) {
       note(fmt::format("{} part the columns", layout_.by->name));
@@ -281,12 +298,13 @@ class Recogniser {
     std::string_view either;
     bool comma = false;
     bool point = false;
-    for (const auto& row : rows_) {
+    for (const auto& row : all_rows()) {
       for (const std::string_view cell : row) {
         const std::size_t suffix = find_suffix(cell);
         const NumberLook look =
             look_at_number(suffix == std::string_view::npos ? cell : cell.substr(0, suffix));
         if (!look.is_number) continue;
+        form_.is_odd = form_.is_odd || look.is_odd;
         comma = comma || look.decimal_comma;
         point = point || (cell.find('.') != std::string_view::npos && look.groups != ".");
         if (look.either) either = cell;
@@ -329,6 +347,8 @@ class Recogniser {
                           (cells.size() + 1 == layout_.cells && cells.size() > 1) ||
                           (cells.size() == layout_.cells + 1 && cells.back().empty());
       if (!is_one && (is_comment(lines_[i - 1]) || cells.empty())) continue;
+      const auto is_unit = [](std::string_view cell) { return is_unit_like(cell); };
+      if (!is_one && std::ranges::all_of(cells, is_unit)) continue;  // of some columns alone
       if (!is_one) break;
       HeadLine line{i - 1, {}};
       for (const std::string_view cell : cells) line.cells.push_back(to_utf8(cell));
@@ -363,9 +383,16 @@ class Recogniser {
     }
   }
 
+  /// Those that the table begins with, and some of later ones.
+  SampledRows all_rows() const {
+    SampledRows rows = rows_;
+    rows.insert(rows.end(), later_.begin(), later_.end());
+    return rows;
+  }
+
   bool is_empty(std::size_t cell) const {
     return std::ranges::all_of(
-        rows_, [&](const auto& row) { return cell >= row.size() || row[cell].empty(); });
+        all_rows(), [&](const auto& row) { return cell >= row.size() || row[cell].empty(); });
   }
 
   /// 0, 1, 2 ... or 1, 2, 3 ...: rows that are numbered.
@@ -390,10 +417,7 @@ class Recogniser {
     form_.one_more = one_more && is_empty(form_.cells);
     if (names_.size() == form_.cells + 1 && names_.back().empty()) names_.pop_back();
     if (form_.one_more) note("the rows end with one delimiter more");
-    if (!names_.empty() && names_.size() + 1 == form_.cells) {
-      names_.insert(names_.begin(), "");
-      if (!units_.empty() && units_.size() + 1 == form_.cells) units_.insert(units_.begin(), "");
-    }
+    if (!names_.empty() && names_.size() + 1 == form_.cells) take_one_name_less();
     names_.resize(form_.cells);
     units_.resize(form_.cells);
     for (std::size_t cell = 0; cell < form_.cells; ++cell) {
@@ -411,6 +435,23 @@ class Recogniser {
           {.header = with_unit(logged, units_[cell]), .logged = logged, .cell = cell});
     }
     number_doubles();
+  }
+
+  /// Where rows are numbered by a column without a name, it is the first one. Else nobody can tell
+  /// which has none.
+  void take_one_name_less() {
+    if (counts_rows(0)) {
+      names_.insert(names_.begin(), "");
+      if (!units_.empty() && units_.size() + 1 == form_.cells) units_.insert(units_.begin(), "");
+      return;
+    }
+    note(
+        fmt::format("line {} has {} names for {} columns, and which of them has none is not known: "
+                    "they are column_1, column_2 and so on, and `map` names them",
+                    form_.header_line, names_.size(), form_.cells));
+    names_.clear();
+    units_.clear();
+    form_.header_line = 0;
   }
 
   /// Of several columns with one name all are numbered, so that none is taken for the other.
@@ -434,11 +475,13 @@ class Recogniser {
 
   void find_suffixes() {
     std::vector<std::string> with;
+    const SampledRows all = all_rows();
     for (ColumnForm& column : form_.columns) {
+      if (column.header == "maneuver") continue;  // labels
       std::string suffix;
       std::size_t such = 0;
       std::size_t filled = 0;
-      for (const auto& row : rows_) {
+      for (const auto& row : all) {
         if (column.cell >= row.size() || is_missing(row[column.cell])) continue;
         const std::string_view cell = row[column.cell];
         ++filled;
@@ -471,10 +514,12 @@ class Recogniser {
 
   const std::string& file_;
   const CsvForm& asked_;
-  std::vector<std::string_view> lines_;
-  std::deque<std::string> texts_;  // keeps what views point to
+  std::vector<std::string_view> all_;
+  std::span<const std::string_view> lines_;  // of all, those that are looked at closely
+  std::deque<std::string> texts_;            // keeps what views point to
   Layout layout_;
-  SampledRows rows_;
+  SampledRows rows_;   // of these lines
+  SampledRows later_;  // of some others
   std::vector<std::string> names_;
   std::vector<std::string> units_;
   TableForm form_;
@@ -495,7 +540,8 @@ bool is_whole(const TableForm& form, std::span<const std::string_view> cells) {
 }
 
 bool TableForm::is_plain() const {
-  if (delimiter != ',' || decimal != '.' || !thousands.empty() || columns.size() != cells) {
+  if (delimiter != ',' || decimal != '.' || !thousands.empty() || is_odd ||
+      columns.size() != cells) {
     return false;
   }
   return std::ranges::all_of(columns, [](const ColumnForm& column) {
@@ -513,7 +559,8 @@ std::optional<double> read_number(const TableForm& form, const ColumnForm& colum
   std::string_view cell = cells[column.cell];
   switch (column.kind) {
     case CellKind::clock:
-      return parse_clock(cell);
+      if (const auto seconds = parse_clock(cell)) return *seconds * column.scale;
+      return std::nullopt;
     case CellKind::date_time: {
       const auto stamp = parse_date_time(cell, column.order);
       if (!stamp) return std::nullopt;

@@ -42,6 +42,7 @@ struct TableForm {
   char delimiter = ',';  // ' ': runs of blanks
   char decimal = '.';
   std::string thousands = {};   // marks between groups of digits
+  bool is_odd = false;          // some have a minus or an exponent of another kind
   std::size_t cells = 0;        // of a row
   bool one_more = false;        // an empty cell may stand at a row's end
   std::size_t header_line = 0;  // counted from 1; 0: there is none

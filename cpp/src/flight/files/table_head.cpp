@@ -7,23 +7,29 @@
 #include <array>
 #include <cctype>
 #include <set>
+#include <utility>
+
+#include "flight/files/headers.hpp"
+#include "flight/files/known_names.hpp"
 
 namespace sepcal::files {
 namespace {
 
 // Beside what needs no list: "-" and "".
 constexpr std::array unit_words{
-    "%",     "a",      "amp",    "amps",    "bar",     "bool",  "c",      "celsius", "deg",
-    "degc",  "degf",   "degm",   "degree",  "degrees", "dps",   "enum",   "f",       "fahrenheit",
-    "feet",  "flag",   "fpm",    "fps",     "ft",      "g",     "gals",   "gauss",   "gph",
-    "hpa",   "hz",     "ident",  "in",      "inch",    "inhg",  "k",      "kelvin",  "kg",
-    "kgf",   "km",     "kmh",    "knots",   "kpa",     "kph",   "kt",     "kts",     "lb",
-    "lbf",   "lbs",    "m",      "mb",      "mbar",    "meter", "meters", "metre",   "metres",
-    "mg",    "mgauss", "min",    "mm",      "mmhg",    "mph",   "mps",    "mps2",    "ms",
-    "mv",    "n",      "ns",     "nt",      "ohm",     "pa",    "pct",    "percent", "psf",
-    "psi",   "rad",    "radian", "radians", "rn",      "rpm",   "s",      "sec",     "seconds",
-    "t",     "torr",   "ts",     "us",      "usec",    "ut",    "utc",    "v",       "volt",
-    "volts", "w",
+    "%",      "cm",     "h",       "hour",    "hours", "hr",     "kmph",    "kn",         "mi",
+    "miles",  "minute", "minutes", "msec",    "mt",    "nmi",    "oe",      "per",        "second",
+    "a",      "amp",    "amps",    "bar",     "bool",  "c",      "celsius", "deg",        "degc",
+    "degf",   "degm",   "degree",  "degrees", "dps",   "enum",   "f",       "fahrenheit", "feet",
+    "flag",   "fpm",    "fps",     "ft",      "g",     "gals",   "gauss",   "gph",        "hpa",
+    "hz",     "ident",  "in",      "inch",    "inhg",  "k",      "kelvin",  "kg",         "kgf",
+    "km",     "kmh",    "knots",   "kpa",     "kph",   "kt",     "kts",     "lb",         "lbf",
+    "lbs",    "m",      "mb",      "mbar",    "meter", "meters", "metre",   "metres",     "mg",
+    "mgauss", "min",    "mm",      "mmhg",    "mph",   "mps",    "mps2",    "ms",         "mv",
+    "n",      "ns",     "nt",      "ohm",     "pa",    "pct",    "percent", "psf",        "psi",
+    "rad",    "radian", "radians", "rn",      "rpm",   "s",      "sec",     "seconds",    "t",
+    "torr",   "ts",     "us",      "usec",    "ut",    "utc",    "v",       "volt",       "volts",
+    "w",
 };
 
 std::string in_lower_case(std::string_view text) {
@@ -70,17 +76,26 @@ bool is_of_unit_words(std::string_view unit) {
   return is_known() && any;
 }
 
-/// How far a line's cells are names of `columns`: there, no units and different.
+/// Whether the cell is what a quantity is called, by sepcal or by others.
+bool is_quantity(const std::string& cell) {
+  const std::vector<std::string> words = split_words(cell);
+  return !words.empty() &&
+         std::ranges::any_of(known_quantities(), [&](const KnownQuantity& quantity) {
+           return unit_in(cell, quantity.name, quantity.kind) != nullptr ||
+                  recognise(cell, quantity) || rank_name(quantity.name, words);
+         });
+}
+
+/// How far a line's cells are names of `columns`: there, no units and different; those of
+/// quantities count more.
 double score_names(const HeadLine& line, std::size_t columns) {
   std::set<std::string_view> names;
-  std::size_t units = 0;
+  double score = 0.0;
   for (const std::string& cell : line.cells) {
-    if (says_nothing(cell)) continue;
-    names.insert(cell);
-    units += is_unit_like(cell) ? 1U : 0U;
+    if (says_nothing(cell) || !names.insert(cell).second) continue;
+    score += is_quantity(cell) ? 1.5 : is_unit_like(cell) ? 0.0 : 1.0;
   }
-  return (static_cast<double>(names.size()) - static_cast<double>(units)) /
-         static_cast<double>(columns);
+  return score / static_cast<double>(columns);
 }
 
 /// Which share of the cells that are not empty are units.
@@ -98,10 +113,15 @@ bool is_unit_like(std::string_view cell) {
   std::string unit = in_lower_case(without_brackets(cell));
   if (says_nothing(unit)) return true;
   if (unit.find("hh:mm") != std::string::npos || unit.starts_with("yyy")) return true;
-  for (const std::string_view mark : {"\xC2\xB0", "\xC2\xB5", "\xCE\xBC", "\xC2\xB2"}) {
-    // The signs of degrees and of micro, and a square.
+  using Spelling = std::pair<std::string_view, std::string_view>;
+  constexpr std::array spellings{
+      Spelling{"\xC2\xB0", "deg"}, Spelling{"\xC2\xB5", "u"}, Spelling{"\xCE\xBC", "u"},
+      Spelling{"\xC2\xB2", "2"},   Spelling{"\xC2\xB7", "*"}, Spelling{"\xE2\x81\xBB", "-"},
+      Spelling{"\xC2\xB9", "1"},
+  };
+  for (const auto& [mark, word] : spellings) {
     for (auto at = unit.find(mark); at != std::string::npos; at = unit.find(mark)) {
-      unit.replace(at, mark.size(), mark == "\xC2\xB0" ? "deg" : mark == "\xC2\xB2" ? "2" : "u");
+      unit.replace(at, mark.size(), word);
     }
   }
   for (const std::string_view which : {" baro", " msl", " agl", " wgs", " gps", " true", " mag"}) {
@@ -117,7 +137,7 @@ TableHead choose_head(const std::vector<HeadLine>& lines) {
   for (const HeadLine& line : lines) columns = std::max(columns, line.cells.size());
   for (const HeadLine& line : lines) {
     const double score = score_names(line, columns);
-    if (head.names != nullptr && score <= best) continue;
+    if (head.names != nullptr && score < best) continue;  // of equal ones the one next to the rows
     head.names = &line;
     best = score;
   }

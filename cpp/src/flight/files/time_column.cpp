@@ -21,22 +21,54 @@ namespace {
 constexpr double day = 86400.0;
 constexpr const char* time_header = "time_s";
 
-bool is_called_time(const ColumnForm& column) {
-  constexpr std::array names{"time", "timestamp", "t",     "utc",   "datetime", "clock", "epoch",
-                             "date", "ts",        "stamp", "zeit",  "uhrzeit",  "temps", "heure",
-                             "hora", "tid",       "tijd",  "tempo", "timeus",   "timems"};
-  return std::ranges::any_of(split_words(column.logged), [&](const std::string& word) {
-    return std::ranges::find(names, word) != names.end();
-  });
+bool is_time_word(const std::string& word) {
+  constexpr std::array words{"time",  "timestamp", "t",     "utc",    "datetime", "clock",
+                             "epoch", "date",      "ts",    "stamp",  "datenum",  "elapsed",
+                             "zeit",  "uhrzeit",   "temps", "heure",  "hora",     "tiempo",
+                             "tid",   "tijd",      "tempo", "horaire"};
+  return std::ranges::find(words, word) != words.end();
 }
 
-/// "time_s", "Time [ms]": a name of time and the unit in full.
-bool is_time_with_unit(const ColumnForm& column) {
-  if (unit_in(column.header, "time", UnitKind::time) != nullptr) return true;
+/// Whose clock it is.
+bool is_owner_of_time(const std::string& word) {
+  constexpr std::array words{"gps", "sys", "system", "session", "log", "lcl", "local"};
+  return std::ranges::find(words, word) != words.end();
+}
+
+bool is_called_time(const ColumnForm& column) {
+  return std::ranges::any_of(split_words(column.logged), is_time_word);
+}
+
+struct TimeUnit {
+  const char* word;
+  const char* suffix;  // as sepcal's headers have it; empty: none has
+};
+
+constexpr std::array time_units{
+    TimeUnit{"s", "s"},         TimeUnit{"sec", "s"},     TimeUnit{"secs", "s"},
+    TimeUnit{"second", "s"},    TimeUnit{"seconds", "s"}, TimeUnit{"sekunden", "s"},
+    TimeUnit{"secondes", "s"},  TimeUnit{"ms", "ms"},     TimeUnit{"msec", "ms"},
+    TimeUnit{"millis", "ms"},   TimeUnit{"us", "us"},     TimeUnit{"usec", "us"},
+    TimeUnit{"micros", "us"},   TimeUnit{"ns", "ns"},     TimeUnit{"min", "min"},
+    TimeUnit{"minutes", "min"}, TimeUnit{"h", "h"},       TimeUnit{"hr", "h"},
+    TimeUnit{"hours", "h"},     TimeUnit{"d", ""},        TimeUnit{"days", ""},
+};
+
+/// The unit of a column whose words are names of time and, last, its unit, "Elapsed Time (min)", or
+/// that is called by its unit alone, "millis".
+const TimeUnit* unit_of_time(const ColumnForm& column) {
+  constexpr std::size_t shortest = 4;  // characters of such a name
   const std::vector<std::string> words = split_words(column.header);
-  constexpr std::array units{"s", "sec", "secs", "second", "seconds", "ms", "us"};
-  return words.size() > 1 && is_called_time(column) &&
-         std::ranges::find(units, words.back()) != units.end();
+  if (words.empty()) return nullptr;
+  const auto unit = std::ranges::find(time_units, words.back(), &TimeUnit::word);
+  if (unit == time_units.end()) return nullptr;
+  const std::span names(words.data(), words.size() - 1);
+  const auto is_of_time = [](const std::string& word) {
+    return is_time_word(word) || is_owner_of_time(word);
+  };
+  const bool is_named = std::ranges::any_of(names, is_time_word);
+  const bool is_alone = names.empty() && words.back().size() >= shortest;
+  return is_alone || (is_named && std::ranges::all_of(names, is_of_time)) ? &*unit : nullptr;
 }
 
 /// The column's cells in the sampled rows that are not empty.
@@ -139,7 +171,20 @@ bool repeats(const std::vector<std::string_view>& cells) {
   return cells.size() >= 2 * stamps;
 }
 
+/// "12:34" in a row of its own each: minutes and seconds, as a log of a row a minute is none.
+bool are_minutes(const std::vector<std::string_view>& cells) {
+  return !repeats(cells) && are_mostly(cells, [](std::string_view cell) {
+    return std::ranges::count(cell, ':') == 1 && cell.find_first_of(".,") == cell.npos;
+  });
+}
+
 bool take_clock(TableForm& form, const SampledRows& rows, ColumnForm& column) {
+  constexpr double minutes = 60.0;
+  if (are_minutes(cells_of(rows, column.cell))) {
+    column.scale = 1.0 / minutes;
+    become_time(form, column, CellKind::clock, "minutes and seconds");
+    return true;
+  }
   const ColumnForm* date = find_date(form, rows, column);
   const auto dates = date == nullptr ? std::vector<std::string_view>() : cells_of(rows, date->cell);
   const auto order = find_order(dates, false);
@@ -181,8 +226,9 @@ struct Epoch {
   const char* unit;
 };
 
-/// Between the years 2000 and 2100 a count since an epoch is of one of these alone.
-std::optional<Epoch> find_epoch(double count, bool whole) {
+/// Between the years 2000 and 2100 a count since an epoch is of one of these alone; `step` to the
+/// next, usually.
+std::optional<Epoch> find_epoch(double count, double step) {
   constexpr double year_2000 = 946'684'800.0;
   constexpr double year_2100 = 4'102'444'800.0;
   constexpr std::array epochs{Epoch{1.0, 0.0, "seconds"}, Epoch{1e-3, 0.0, "milliseconds"},
@@ -193,9 +239,10 @@ std::optional<Epoch> find_epoch(double count, bool whole) {
   }
   constexpr std::array calendars{Epoch{day, 25'569.0, "days (a spreadsheet's)"},
                                  Epoch{day, 719'529.0, "days (MATLAB's)"}};
+  constexpr double longest = 60.0;  // s from row to row; what steps on farther is no count of days
   for (const Epoch& epoch : calendars) {
     const double seconds = (count - epoch.first) * epoch.scale;
-    if (!whole && seconds >= year_2000 && seconds < year_2100) return epoch;
+    if (step * day <= longest && seconds >= year_2000 && seconds < year_2100) return epoch;
   }
   return std::nullopt;
 }
@@ -210,16 +257,26 @@ std::vector<double> numbers_of(const TableForm& form, const std::vector<std::str
   return numbers;
 }
 
-/// Seconds that show themselves by their fractions.
-bool shows_seconds(const std::vector<double>& numbers) {
-  constexpr double longest = 5.0;  // s between rows that are a second's fractions
-  if (numbers.size() < 2 || !std::ranges::is_sorted(numbers)) return false;
+/// From one number to the next, on average; nothing where they don't rise.
+std::optional<double> find_step(const std::vector<double>& numbers) {
+  if (numbers.size() < 2 || !std::ranges::is_sorted(numbers)) return std::nullopt;
   const double step = (numbers.back() - numbers.front()) / static_cast<double>(numbers.size() - 1);
-  return step > 0.0 && step <= longest &&
+  return step > 0.0 ? std::optional(step) : std::nullopt;
+}
+
+/// Seconds that show themselves by their fractions: what steps on less than at 2 kHz is minutes or
+/// more.
+bool shows_seconds(const std::vector<double>& numbers) {
+  constexpr double shortest = 5e-4;  // s between rows
+  constexpr double longest = 1.5;
+  const auto step = find_step(numbers);
+  return step && *step >= shortest && *step <= longest &&
          std::ranges::any_of(numbers, [](double number) { return number != std::floor(number); });
 }
 
 bool take_seconds(TableForm& form, const SampledRows& rows, ColumnForm& column) {
+  const std::vector<std::string> words = split_words(column.logged);
+  if (std::ranges::find(words, "utc") != words.end()) return false;  // "100001.2" is 10:00:01.2
   if (!shows_seconds(numbers_of(form, cells_of(rows, column.cell)))) return false;
   become_time(form, column, CellKind::number, "whose fractions are of seconds");
   return true;
@@ -227,11 +284,10 @@ bool take_seconds(TableForm& form, const SampledRows& rows, ColumnForm& column) 
 
 bool take_count(TableForm& form, const SampledRows& rows, ColumnForm& column) {
   const std::vector<double> numbers = numbers_of(form, cells_of(rows, column.cell));
-  if (numbers.size() < 2 || !std::ranges::is_sorted(numbers)) return false;
-  const bool whole =
-      std::ranges::all_of(numbers, [](double number) { return number == std::floor(number); });
-  const auto epoch = find_epoch(numbers.front(), whole);
-  if (!epoch || numbers.back() == numbers.front()) return false;
+  const auto step = find_step(numbers);
+  if (!step) return false;
+  const auto epoch = find_epoch(numbers.front(), *step);
+  if (!epoch) return false;
   const double days = std::floor((numbers.front() - epoch->first) * epoch->scale / day);
   column.scale = epoch->scale;
   column.origin = epoch->first + days * day / epoch->scale;
@@ -251,7 +307,7 @@ bool is_time_text(std::string_view cell) {
          parse_date(cell, order) || parse_date(cell, american);
 }
 
-void find_time(TableForm& form, const SampledRows& rows) {
+void find_time(TableForm& form, const SampledRows& rows, const std::vector<std::string>& mapped) {
   const auto is_number = [&](std::string_view cell) {
     return parse_number_as(cell, form.decimal, form.thousands).has_value();
   };
@@ -259,8 +315,23 @@ void find_time(TableForm& form, const SampledRows& rows) {
     return parse_date_time(cell, DateOrder::day_first) ||
            parse_date_time(cell, DateOrder::month_first);
   };
-  for (const ColumnForm& column : form.columns) {
-    if (is_time_with_unit(column) && are_mostly(cells_of(rows, column.cell), is_number)) return;
+  const auto is_of_numbers = [&](const ColumnForm& column) {
+    return are_mostly(cells_of(rows, column.cell), is_number);
+  };
+  const auto is_mapped = [&](const ColumnForm& column) {
+    return std::ranges::find(mapped, column.logged) != mapped.end() && is_of_numbers(column);
+  };
+  const auto is_exact = [&](const ColumnForm& column) {
+    return unit_in(column.header, "time", UnitKind::time) != nullptr && is_of_numbers(column);
+  };
+  if (std::ranges::any_of(form.columns, is_exact)) return;
+  for (ColumnForm& column : form.columns) {
+    const TimeUnit* const unit = unit_of_time(column);
+    if (unit == nullptr || is_mapped(column) || !is_of_numbers(column)) continue;
+    if (*unit->suffix == '\0') return;  // nothing reads days without their epoch
+    become_time(form, column, CellKind::number, fmt::format("in {}", unit->word));
+    column.header = fmt::format("time_{}", unit->suffix);
+    return;
   }
   // By how much they say: a date and a time, a clock, a count; of a kind those called time first.
   // Where several rows share a stamp, seconds with fractions are better.
@@ -270,7 +341,8 @@ void find_time(TableForm& form, const SampledRows& rows) {
       const auto cells = cells_of(rows, column.cell);
       if (!are_mostly(cells, is_such)) continue;
       for (ColumnForm& finer : form.columns) {
-        if (repeats(cells) && is_called_time(finer) && take_seconds(form, rows, finer)) return true;
+        if (!repeats(cells) || is_mapped(finer) || !is_called_time(finer)) continue;
+        if (take_seconds(form, rows, finer)) return true;
       }
       return take(column, cells);
     }
@@ -286,7 +358,7 @@ void find_time(TableForm& form, const SampledRows& rows) {
     if (take_any(called, is_stamp, with_date) || take_any(called, is_clock, of_day)) return;
   }
   for (ColumnForm& column : form.columns) {
-    if (!is_called_time(column)) continue;
+    if (!is_called_time(column) || is_mapped(column)) continue;
     if (take_count(form, rows, column) || take_seconds(form, rows, column)) return;
   }
 }

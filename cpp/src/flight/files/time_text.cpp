@@ -69,12 +69,12 @@ std::optional<double> take_clock(std::string_view& text) {
   if (!take(text, ":")) {
     const bool is_hours = text.empty() || (text.front() != '.' && text.front() != ',');
     const auto fraction = take_fraction(text);
-    if (!fraction || *second >= 60 || (is_hours && *first >= 25)) return std::nullopt;
+    if (!fraction || *second >= 60) return std::nullopt;
     if (!is_hours) return *first * minute + *second + *fraction;
     return (*first + take_half_day(text, *first)) * hour + *second * minute;
   }
   const auto seconds = take_digits(text, 2);
-  if (!seconds || *first >= 25 || *second >= 60 || *seconds > 60) return std::nullopt;
+  if (!seconds || *second >= 60 || *seconds > 60) return std::nullopt;
   const auto fraction = take_fraction(text);
   if (!fraction) return std::nullopt;
   const double hours = *first + take_half_day(text, *first);

@@ -32,6 +32,18 @@ KeptRows::Release release_of(const Flight& flight) {
   };
 }
 
+/// What logs have in the place of some quantities.
+std::string say_other_ways(std::span<const std::string_view> names) {
+  std::string ways;
+  if (std::ranges::find(names, "vn") != names.end()) {
+    ways += "; speed and track would do as well: gs_kt, track_deg and vs_fpm";
+  }
+  if (std::ranges::find(names, "roll") != names.end()) {
+    ways += "; a quaternion from body to north-east-down would do as well: qw, qx, qy, qz";
+  }
+  return ways;
+}
+
 }  // namespace
 
 constexpr std::size_t most_notes = 10;  // of one kind; more of them nobody reads
@@ -182,9 +194,9 @@ void RecordBuilder::fail_missing(std::span<const std::string_view> names) const 
   throw OptionError(files::around(
       flight_.name() + ": ",
       files::describe_missing(name, quantity.kind, other_headers(), quantity.bare),
-      fmt::format("{}; {}{}",
+      fmt::format("{}{}; {}{}",
                   others.empty() ? "" : fmt::format("; missing too: {}", fmt::join(others, ", ")),
-                  flight_.list_columns(),
+                  say_other_ways(names), flight_.list_columns(),
                   flight_.is_mapped()
                       ? "; quaternions and positions of a streamed log are not converted"
                       : "")));
@@ -475,6 +487,7 @@ bool RecordBuilder::is_named_like_quantity(std::string_view header) const {
 
 void RecordBuilder::take_drivers() {
   std::vector<std::string> refused;
+  std::vector<std::string> unnameable;
   for (const Flight::Column& column : flight_.columns()) {
     if (is_quantity(column)) continue;
     const auto is_valid = [&](std::size_t row) { return files::is_valid(column, nullptr, row); };
@@ -493,13 +506,21 @@ void RecordBuilder::take_drivers() {
                       column.header));
     } else {
       if (!can_name(column.header) && column.header != files::flight_number) {
-        refused.push_back(fmt::format(
-            "column '{}' can't drive an effect: a name has no blanks, brackets or ^; rename it, "
-            "e.g. to throttle_pct",
-            column.header));
+        unnameable.push_back(column.header);
       }
       take(column.header, column, nullptr);  // what can't be named is compared all the same
     }
+  }
+  if (unnameable.size() == 1) {
+    refused.push_back(fmt::format(
+        "column '{}' can't drive an effect: a name has no blanks, brackets or ^; rename it, "
+        "e.g. to throttle_pct",
+        unnameable.front()));
+  } else if (!unnameable.empty()) {
+    refused.push_back(
+        fmt::format("columns '{}' can't drive an effect: a name has no blanks, "
+                    "brackets or ^; rename those that may",
+                    fmt::join(unnameable, "', '")));
   }
   const std::size_t told = std::min(refused.size(), most_notes);
   for (std::size_t i = 0; i < told; ++i) note(refused[i]);

@@ -158,6 +158,7 @@ TEST_CASE("files that can't be read") {
 
 TEST_CASE("files without rows") {
   CHECK(refuse("") == "flight.csv: the file is empty; its first line should name the columns");
+  CHECK(refuse(",,\n,,\n") == "flight.csv: no column has a name or a value; is this a CSV file?");
   CHECK(refuse("a,b\n") == "flight.csv: there is a header, but no row of data below it");
   CHECK(refuse("a,b\n\n\n") == "flight.csv: there is a header, but no row of data below it");
 }
@@ -221,7 +222,8 @@ TEST_CASE("lines above the rows") {
   CHECK(notes_of("# Logger\nsn 7\na,b\n1,2\n") == Lines{"2 lines above the rows are left out"});
   CHECK(read_rows("sep=;\na;b\n1;2\n") == Rows{{"a", "b"}, {"1", "2"}});
   CHECK(read_rows("# a b\n1 2\n3 4\n") == Rows{{"a", "b"}, {"1", "2"}, {"3", "4"}});
-  CHECK(read_rows("vn,t\nm/s,s\n1,2\n") == Rows{{"vn (m/s)", "t (s)"}, {"1", "2"}});
+  CHECK(read_rows("vn,t\nm/s,s\n1,2\n") == Rows{{"vn (m/s)", "time_s"}, {"1", "2"}});
+  CHECK(read_rows("bx by t\n  (nt)\n1 2 3\n4 5 6\n").front() == Lines{"bx", "by", "t"});
   CHECK(read_rows("#m/s,degrees\nvn,track\n1,2\n") ==
         Rows{{"vn (m/s)", "track (degrees)"}, {"1", "2"}});
   // A data logger's four lines (Campbell Scientific, TOA5).
@@ -240,6 +242,20 @@ TEST_CASE("columns that number rows, have no name or one name") {
   CHECK(read_rows("a,b,a\n1,2,3\n") == Rows{{"a.1", "b", "a.2"}, {"1", "2", "3"}});
   CHECK(notes_of("a,b,a\n1,2,3\n") == Lines{"column 'a' is there twice: the first is a.1"});
   CHECK(read_rows("\"a\tb\",c\n1,2\n") == Rows{{"a\tb", "c"}, {"1", "2"}});
+}
+
+TEST_CASE("names with digits are no numbers") {
+  CHECK(read_rows("T1,T2,q0,Ax1\n1,2,3,4\n5,6,7,8\n").front() == Lines{"T1", "T2", "q0", "Ax1"});
+  CHECK(read_rows("Flight 7;;\nx;y;z\n1;2;3\n").front() == Lines{"x", "y", "z"});
+  CHECK(read_rows("Logger,XY,v1\nvn_mps,b2,c2\n1,2,3\n").front() == Lines{"vn_mps", "b2", "c2"});
+}
+
+TEST_CASE("a header of one name less is nobody's") {
+  CHECK(read_rows("a,b\n5.5,1,2\n7.5,3,4\n").front() == Lines{"column_1", "column_2", "column_3"});
+}
+
+TEST_CASE("exponents of Fortran") {
+  CHECK(numbers_of("a,b\n1.5D+02,2.d-1\n1D0,3\n") == Numbers{{150.0, 0.2}, {1.0, 3.0}});
 }
 
 TEST_CASE("a unit in each cell") {
@@ -318,6 +334,14 @@ TEST_CASE("time in text") {
   CHECK(numbers_of("Date,Time,x\n2024-05-03,23:59:59,1\n2024-05-04,00:00:01,2\n") ==
         Numbers{{{}, 86399.0, 1.0}, {{}, 86401.0, 2.0}});
   CHECK(read_rows("Date,Time,x\n2024-05-03,23:59:59,1\n").front() == Lines{"Date", "time_s", "x"});
+  CHECK(read_rows("Elapsed Time (min),x\n0.1,1\n0.2,2\n").front() == Lines{"time_min", "x"});
+  CHECK(read_rows("millis,x\n100,1\n200,2\n").front() == Lines{"time_ms", "x"});
+  CHECK(read_rows("Zeit [s],x\n1,1\n2,2\n").front() == Lines{"time_s", "x"});
+  // Seconds of a day are no days, and hours no seconds.
+  CHECK(numbers_of("time,x\n43500.0,1\n43500.1,2\n") == Numbers{{43500.0, 1.0}, {43500.1, 2.0}});
+  CHECK(seconds("datenum", {"739375.416666667", "739375.416678241"})[1] ==
+        doctest::Approx(36001.0).epsilon(1e-7));
+  CHECK(read_rows("time,x\n10.50000,1\n10.50003,2\n").front() == Lines{"time", "x"});
   // Which count is not known: nothing is guessed.
   CHECK(read_rows("t,x\n0,1\n200,2\n400,3\n").front() == Lines{"t", "x"});
 }

@@ -47,7 +47,11 @@ struct LogChoice {
   std::string join = {};
 
   /// What of it says how to read the file.
-  CsvForm form() const { return {delimiter, decimal}; }
+  CsvForm form() const {
+    CsvForm form{delimiter, decimal, {}};
+    for (const auto& [header, logged] : map) form.mapped.push_back(logged);
+    return form;
+  }
 
   bool operator==(const LogChoice&) const = default;
 };
