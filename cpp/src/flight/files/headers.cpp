@@ -202,6 +202,12 @@ Message ask_for_near_miss(std::string_view quantity, UnitKind kind,
     const auto units = known_units(kind);
     if (units.empty()) return {};
     const std::string accepted = fmt::format("{}_{}", quantity, units.front().suffix);
+    if (header->find_first_of("([") != std::string::npos) {
+      std::vector<std::string_view> all;
+      for (const Unit& unit : units) all.push_back(unit.suffix);
+      return {fmt::format("; '{}' is in a unit that is not known: convert it to one of {}", *header,
+                          fmt::join(all, ", "))};
+    }
     std::vector<std::string_view> rest;
     for (const Unit& unit : units.subspan(1)) rest.push_back(unit.suffix);
     return {fmt::format("; '{}' says no unit that is known: ", *header), Option{"map"},

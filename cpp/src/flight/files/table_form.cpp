@@ -132,7 +132,7 @@ std::vector<std::string_view> cut(std::string_view line, char delimiter,
 
 /// A comment's text, and any other line.
 std::string_view without_mark(std::string_view line) {
-  while (!line.empty() && (line.front() == '#' || line.front() == '%' || line.front() == ' ')) {
+  while (!line.empty() && std::string_view("#%! ").find(line.front()) != std::string_view::npos) {
     line.remove_prefix(1);
   }
   while (line.starts_with("//")) line.remove_prefix(2);
@@ -152,6 +152,44 @@ int fit_head(std::span<const std::string_view> lines, const Layout& layout,
   return 2;
 }
 
+/// The cells that nearly all of the last rows have; 0 where these differ, or are few.
+std::size_t find_length_at_end(const Layout& layout,
+                               const std::vector<std::optional<std::size_t>>& values) {
+  constexpr std::size_t most = 20;
+  constexpr std::size_t fewest = 10;
+  std::map<std::size_t, std::size_t> lengths;
+  std::size_t rows = 0;
+  for (std::size_t i = values.size(); i > 0 && rows < most; --i) {
+    if (!values[i - 1]) continue;
+    ++rows;
+    ++lengths[layout.lines[i - 1].size()];
+  }
+  const auto usual = std::ranges::max_element(lengths, {}, [](auto& l) { return l.second; });
+  return rows >= fewest && 5 * usual->second >= 4 * rows ? usual->first : 0;
+}
+
+/// A line farther down that names quantities, above as many rows as this has cells: what stands
+/// before it is another table, or a preamble of numbers.
+std::optional<std::size_t> find_later_head(std::span<const std::string_view> lines,
+                                           const Layout& layout,
+                                           const std::vector<std::optional<std::size_t>>& values) {
+  constexpr std::size_t reach = 100;
+  const std::size_t last = std::min(lines.size(), layout.first_row + reach);
+  for (std::size_t i = layout.first_row + 1; i + 1 < last; ++i) {
+    const auto& cells = layout.lines[i];
+    if (values[i] || cells.size() != layout.cells) continue;
+    const auto before = lines.first(i);
+    if (std::ranges::find(before, lines[i]) != before.end()) continue;  // the header once more
+    std::vector<std::string> names;
+    for (const std::string_view cell : cells) names.push_back(to_utf8(cell));
+    if (std::ranges::find(names, "") != names.end() || !names_quantities(names)) continue;
+    for (std::size_t row = i + 1; row < last; ++row) {
+      if (values[row]) return row;
+    }
+  }
+  return std::nullopt;
+}
+
 /// The rows begin at the first line like one that is followed by others as long.
 Layout lay_out(std::span<const std::string_view> lines, const Delimiter& by,
                std::deque<std::string>& texts) {
@@ -164,6 +202,7 @@ Layout lay_out(std::span<const std::string_view> lines, const Delimiter& by,
                                        : cut(line, by.mark, texts));
     values.push_back(count_values(layout.lines.back()));
   }
+  const std::size_t length_at_end = find_length_at_end(layout, values);
   constexpr std::size_t followers = 20;
   for (std::size_t first = 0; first < lines.size(); ++first) {
     if (!values[first]) continue;
@@ -181,7 +220,9 @@ Layout lay_out(std::span<const std::string_view> lines, const Delimiter& by,
     }
     const auto usual = std::ranges::max_element(lengths, {}, [](auto& l) { return l.second; });
     const std::size_t own = layout.lines[first].size();
-    if (5 * rows < 4 * seen || (own != usual->first && own != usual->first + 1)) continue;
+    const bool goes_on = length_at_end == 0 || usual->first == length_at_end;
+    if (!goes_on || 5 * rows < 4 * seen || (own != usual->first && own != usual->first + 1))
+      continue;
     layout.first_row = first;
     layout.cells = usual->first;
     std::size_t sum = 0;
@@ -192,6 +233,7 @@ Layout lay_out(std::span<const std::string_view> lines, const Delimiter& by,
       ++count;
     }
     layout.values = static_cast<double>(sum) / static_cast<double>(count);
+    if (const auto later = find_later_head(lines, layout, values)) layout.first_row = *later;
     layout.head_fits = fit_head(lines, layout, texts);
     break;
   }
@@ -529,7 +571,9 @@ class Recogniser {
 
 bool is_comment(std::string_view line) {
   while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
-  if (line.starts_with('#') || line.starts_with('%') || line.starts_with("//")) return true;
+  if (line.starts_with('#') || line.starts_with('%') || line.starts_with('!') ||
+      line.starts_with("//"))
+    return true;
   return line.find_first_of("-=") != std::string_view::npos &&
          line.find_first_not_of("-=+|: \t") == std::string_view::npos;
 }

@@ -61,8 +61,11 @@ bool is_of_unit_words(std::string_view unit) {
     while (word.size() > 1 && std::isdigit(static_cast<unsigned char>(word.back())) != 0) {
       word.pop_back();
     }
-    const bool known = word.empty() || std::ranges::find(unit_words, word) != unit_words.end();
-    any = any || !word.empty();
+    const bool is_number =
+        word.size() == 1 && std::isdigit(static_cast<unsigned char>(word[0])) != 0;
+    const bool known =
+        word.empty() || is_number || std::ranges::find(unit_words, word) != unit_words.end();
+    any = any || (!word.empty() && !is_number);
     word.clear();
     return known;
   };
@@ -107,6 +110,10 @@ double score_units(const HeadLine& line) {
 }
 
 }  // namespace
+
+bool names_quantities(const std::vector<std::string>& cells) {
+  return std::ranges::any_of(cells, is_quantity);
+}
 
 bool is_unit_like(std::string_view cell) {
   if (cell.empty()) return false;

@@ -27,6 +27,9 @@ struct TableHead {
 /// Of the lines above the rows, in their order, the one that names columns, and the one of units.
 TableHead choose_head(const std::vector<HeadLine>& lines);
 
+/// Whether one of them is what a quantity is called, by sepcal or by others.
+bool names_quantities(const std::vector<std::string>& cells);
+
 /// "vn (m/s)"; the name alone where the unit says nothing or the name says one itself.
 std::string with_unit(const std::string& name, std::string_view unit);
 

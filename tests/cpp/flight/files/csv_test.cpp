@@ -250,6 +250,17 @@ TEST_CASE("names with digits are no numbers") {
   CHECK(read_rows("Logger,XY,v1\nvn_mps,b2,c2\n1,2,3\n").front() == Lines{"vn_mps", "b2", "c2"});
 }
 
+TEST_CASE("a table of other numbers above the log") {
+  CHECK(read_rows("id,gain\n1,2\n2,3\n\ntime_s,vn_mps\n0,1\n0.5,2\n") ==
+        Rows{{"time_s", "vn_mps"}, {"0", "1"}, {"0.5", "2"}});
+  std::string bytes;
+  for (int i = 0; i < 30; ++i) bytes += "PARAM_" + std::to_string(i) + ",0.7\n";
+  bytes += "time_s,vn_mps,ve_mps\n";
+  for (int i = 0; i < 30; ++i) bytes += std::to_string(i) + ",1,2\n";
+  CHECK(read_rows(bytes).front() == Lines{"time_s", "vn_mps", "ve_mps"});
+  CHECK(read_rows(bytes).size() == 31);
+}
+
 TEST_CASE("a header of one name less is nobody's") {
   CHECK(read_rows("a,b\n5.5,1,2\n7.5,3,4\n").front() == Lines{"column_1", "column_2", "column_3"});
 }
