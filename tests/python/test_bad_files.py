@@ -58,7 +58,7 @@ def open_quote(log: Log) -> str:
 
 NO_TABLES: dict[str, tuple[Callable[[Log], str | bytes], tuple[str, ...]]] = {
     "open quote": (open_quote, ("line 7", "never closed", "ends on its line")),
-    "binary": (lambda log: b"\x89PNG\r\n\x1a\n" + bytes(range(256)), ("line 1", "CSV file?")),
+    "binary": (lambda log: b"\x89PNG\r\n\x1a\n" + bytes(range(256)), ("no text", "CSV file?")),
     "binary amid text": (
         lambda log: log.text().encode()[:-40] + b"\x00\xff" + log.text().encode()[-40:],
         ("line ", "byte 0x00", "CSV file?"),
@@ -80,7 +80,7 @@ BROKEN_ROWS: dict[str, tuple[Callable[[Log], str], tuple[str, ...]]] = {
     "short row": (shorten_row, ("line 7", "cells in a row of", "--drop-invalid")),
     "long row": (lengthen_row, ("line 7", "cells in a row of", "--drop-invalid")),
     "decimal comma": (write_decimal_comma, ("line 7", "cells in a row of", "--drop-invalid")),
-    "duplicate column": (spoil_header, ("'roll_rad' is missing", "roll_rad.1")),
+    "duplicate column": (spoil_header, ("missing", "roll_rad.")),
 }
 
 
@@ -150,7 +150,7 @@ def stop_air(share: float) -> Callable[[Log], None]:
 
 BOTH = ("sepcal-pitot", "sepcal-mag")
 NO_FLIGHTS: dict[str, tuple[tuple[str, ...], Callable[[Log], object], tuple[str, ...]]] = {
-    "missing time": (BOTH, lambda log: log.drop("time_s"),
+    "missing time": (BOTH[:1], lambda log: log.drop("time_s"),
                      ("column 'time_s' is missing", "the file has: ", "p_radps, q_radps")),
     "missing pressure": (BOTH[:1], lambda log: log.drop("dpb_pa"),
                          ("column 'dpb_pa' is missing", "the file has: time_s, ")),

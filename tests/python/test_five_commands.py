@@ -13,6 +13,7 @@ import pytest
 
 from documents import ROOT
 from flown_logs import write_logs
+from mutated_forms import TRUTH, fly
 
 PAGE = (ROOT / "docs" / "commands.md").read_text()
 SESSIONS = [
@@ -82,3 +83,26 @@ def test_of_an_autopilot_s_log(word: str, log: str, tmp_path: Path) -> None:
     printed = type_session(session(word), tmp_path)
     assert "mag0" in printed[1]
     assert "status: converged" in printed[2]
+
+
+def test_of_an_avionics_maker_s_log(tmp_path: Path) -> None:
+    """A row a second of a Garmin G1000: speed and track, knots, feet, a row of units."""
+    flown = fly()
+    rows = [
+        '#airframe_info, log_version="1.00", airframe_name="Cessna 172S"',
+        "#yyy-mm-dd, hh:mm:ss, hh:mm, degrees, degrees, ft Baro, kt, kt, fpm, deg",
+        "  Lcl Date, Lcl Time, UTCOfst, Latitude, Longitude, AltB, TAS, GndSpd, VSpd, TRK",
+    ]
+    knot = 1852 / 3600
+    for k, (north, east, read) in enumerate(
+        zip(flown["vn_mps"], flown["ve_mps"], flown["airspeed_mps"], strict=True)
+    ):
+        clock = f"{14 + k // 3600:02d}:{k // 60 % 60:02d}:{k % 60:02d}"
+        speed, track = math.hypot(north, east) / knot, math.degrees(math.atan2(east, north)) % 360
+        cells = f"2023-05-03, {clock}, -04:00, +44.1234567, -73.1234567, 2500.1"
+        rows.append(f"{cells}, {read / knot:.3f}, {speed:.3f}, 0.00, {track:.3f}")
+    (tmp_path / "log_230503.csv").write_text("\n".join(rows) + "\n")
+    type_session(session("log_230503.csv"), tmp_path)
+    found = json.loads((tmp_path / "base.json").read_text())["parameters"]
+    for name, truth in TRUTH.items():
+        assert abs(found[name]["value"] - truth) < 4 * found[name]["standard_error"], name

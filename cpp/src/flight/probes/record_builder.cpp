@@ -99,7 +99,9 @@ void RecordBuilder::find_quantity(const ProbeQuantity& quantity) {
     const files::Unit* unit = files::unit_in(header, quantity.name, quantity.kind, quantity.bare);
     if (unit == nullptr) {
       const std::string_view name = header.substr(0, header.rfind('_'));
-      if (quantity.bare == nullptr && name == quantity.name) unknown = &column;
+      // "roll_rad.2" is the second of one name, and in no other unit.
+      const bool is_numbered = header.find('.') != std::string_view::npos;
+      if (quantity.bare == nullptr && name == quantity.name && !is_numbered) unknown = &column;
     } else if (found.column != nullptr) {
       throw OptionError(
           {fmt::format("{}: {} is there twice, as '{}' and '{}'; ", flight_.name(), quantity.name,
