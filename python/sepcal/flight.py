@@ -379,11 +379,12 @@ def kind_of(model: object) -> str:
 def to_columns(data: object, model: "Model") -> Columns | None:
     """A model's own columns by name, and what was meant to be; None of a flight.
 
-    That has not all of them, and a column whose header ends in a unit.
+    A flight has one that is missing under a header that ends in a unit: "roll_deg" for roll.
     """
     if isinstance(data, str | os.PathLike) or not hasattr(data, "__getitem__"):
         return None
     columns = Flight(data) if is_frame(data) else by_name(data)  # type: ignore[arg-type]
     needed = {*model._columns_in(columns), *model._measured_in(columns)}
-    is_flight = not needed <= set(columns) and any(quantity_of(str(name))[1] for name in columns)
+    with_units = {name for name, unit in map(quantity_of, map(str, columns)) if unit}
+    is_flight = bool((needed - set(columns)) & with_units)
     return None if is_flight else columns
