@@ -140,7 +140,7 @@ def test_later_verbs(tmp_path: Path, mount: str):
          ("the true field is missing", "--field N,E,D", "the file has: time_s, mx_gauss, ")),
         ("sepcal-mag", "bench_tilt_sphere_mag.csv",
          ("the true field is missing", "--field N,E,D", "the file has: ")),
-        ("sepcal-mag", "nist/Misra1a.dat", ("nist/Misra1a.dat", "CSV file")),
+        ("sepcal-mag", "nist/Misra1a.dat", ("nist/Misra1a.dat", "column_1, column_2")),
         ("sepcal-pitot", "nist", ("nist: is a folder", "name a CSV file in it")),
     ],
 )  # fmt: skip
