@@ -145,7 +145,7 @@ std::string HelpPage::make_help(const CLI::App* app, std::string called,
                                 CLI::AppFormatMode /*mode*/) const {
   std::string page = wrapped(app->get_description(), page_width, 0) + "\n" + usage_of(*app, called);
   const auto arguments = arguments_of(*app);
-  if (!arguments.empty()) page += "\n";
+  if (!arguments.empty()) page += '\n';
   for (const CLI::Option* argument : arguments) page += row_of(*argument);
   const auto verbs = app->get_subcommands({});
   if (!verbs.empty()) page += "\nVerbs (each with --help):\n";

@@ -69,7 +69,7 @@ CLI::Option* add_file(CLI::App& verb, const std::string& name, std::string& file
   };
   CLI::Option* const option = verb.add_option(name, file, description)->check(refuse_empty);
   const bool is_output = name.ends_with("--output");
-  if (!is_output && name.starts_with("-")) return option;
+  if (!is_output && name.starts_with('-')) return option;
   const auto name_stream = [is_output](const std::string& typed) {
     return typed != "-" ? typed : is_output ? standard_output : standard_input;
   };

@@ -25,7 +25,7 @@ constexpr std::array sections{"mag", "pitot", "five-hole", "vane-boom", "pitot-s
 
 /// The instrument of a program: "mag" of "sepcal-mag" and of "sepcal mag".
 std::string instrument_of(const CLI::App& cli) {
-  const std::string name = cli.get_name();
+  const std::string& name = cli.get_name();
   return name.substr(name.find_last_of("- ") + 1);
 }
 
@@ -70,7 +70,7 @@ std::vector<std::string> values_of(const toml::node& node) {
   }
   const auto* const array = node.as_array();
   if (array != nullptr && !array->empty() && array->is_homogeneous(toml::node_type::string)) {
-    for (const toml::node& each : *array) values.push_back(*typed(each));
+    for (const toml::node& each : *array) values.push_back(typed(each).value_or(""));
     return values;
   }
   const auto text = typed_list(node);
@@ -146,7 +146,7 @@ class Project {
     if (option == nullptr || is_excluded(name)) return;
     if (node.is_boolean()) {
       if (option->get_items_expected_max() > 0) fail_value(section, name);
-      if (option->count() == 0 && *node.value<bool>()) words_.push_back("--" + name);
+      if (option->count() == 0 && node.value_or(false)) words_.push_back("--" + name);
       return;
     }
     const std::vector<std::string> values = values_of(node);

@@ -64,7 +64,7 @@ std::string first_file(const std::vector<std::string>& words) {
   std::string could;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool is_output = i > 0 && (words[i - 1] == "-o" || words[i - 1] == "--output");
-    if (is_output || words[i].starts_with("-")) continue;
+    if (is_output || words[i].starts_with('-')) continue;
     if (is_there(words[i])) return words[i];
     if (could.empty()) could = words[i];
   }

@@ -67,7 +67,7 @@ std::string table_of(const CLI::App& cli) {
   for (const CLI::App* verb : cli.get_subcommands({})) {
     verbs.push_back(verb_json(*verb, cli.get_name()));
   }
-  const std::string called = cli.get_name();
+  const std::string& called = cli.get_name();
   return Json{{"name", called.substr(called.rfind(' ') + 1)},
               {"sentence", cli.get_description()},
               {"verbs", std::move(verbs)}}

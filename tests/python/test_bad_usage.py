@@ -159,7 +159,11 @@ def test_field_options(magnetometer: Bench, options: tuple[str, ...], words: tup
         ((), ("--help",)),
         (
             ("calibrate",),
-            ("'calibrate' is no verb", "fit, compare, residuals, intervals, diagnose, add", "--help"),
+            (
+                "'calibrate' is no verb",
+                "fit, compare, residuals, intervals, diagnose, add",
+                "--help",
+            ),
         ),
         (("fit",), ("FLIGHT is required", "fit --help")),
         (("compare", "flight.csv"), ("CALIBRATION is required", "compare --help")),

@@ -39,7 +39,8 @@ bool hits_the_next_key(std::string_view quantity, std::string_view name) {
   return std::ranges::any_of(keys, [&](std::string_view row) {
     const std::size_t right = row.find(*differs.in1);
     const std::size_t hit = row.find(*differs.in2);
-    return right != row.npos && hit != row.npos && (right == hit + 1 || hit == right + 1);
+    return right != std::string_view::npos && hit != std::string_view::npos &&
+           (right == hit + 1 || hit == right + 1);
   });
 }
 

@@ -228,9 +228,8 @@ Layout lay_out(std::span<const std::string_view> lines, const Delimiter& by,
     std::size_t sum = 0;
     std::size_t count = 0;
     for (std::size_t i = first; i < lines.size(); ++i) {
-      if (!values[i]) continue;
-      sum += *values[i];
-      ++count;
+      sum += values[i].value_or(0);
+      count += values[i] ? 1U : 0U;
     }
     layout.values = static_cast<double>(sum) / static_cast<double>(count);
     if (const auto later = find_later_head(lines, layout, values)) layout.first_row = *later;

@@ -174,7 +174,7 @@ bool repeats(const std::vector<std::string_view>& cells) {
 /// "12:34" in a row of its own each: minutes and seconds, as a log of a row a minute is none.
 bool are_minutes(const std::vector<std::string_view>& cells) {
   return !repeats(cells) && are_mostly(cells, [](std::string_view cell) {
-    return std::ranges::count(cell, ':') == 1 && cell.find_first_of(".,") == cell.npos;
+    return std::ranges::count(cell, ':') == 1 && cell.find_first_of(".,") == std::string_view::npos;
   });
 }
 

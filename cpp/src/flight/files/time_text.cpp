@@ -22,12 +22,12 @@ std::string_view trim(std::string_view text) {
 
 /// Takes the digits that `text` begins with, up to `most` of them.
 std::optional<int> take_digits(std::string_view& text, std::size_t most) {
+  constexpr int ten = 10;
+  const std::size_t count = std::min({text.find_first_not_of("0123456789"), text.size(), most});
+  if (count == 0) return std::nullopt;
   int value = 0;
-  const auto last = text.data() + std::min(most, text.size());
-  if (text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0) return {};
-  const auto [end, error] = std::from_chars(text.data(), last, value);
-  if (error != std::errc{}) return {};
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  for (const char digit : text.substr(0, count)) value = ten * value + (digit - '0');
+  text.remove_prefix(count);
   return value;
 }
 
@@ -113,10 +113,9 @@ std::optional<double> take_date(std::string_view& text, DateOrder order) {
   constexpr std::size_t compact = 8;  // 20240503
   const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
   if (digits == compact) {
-    auto year = take_digits(text, 4);
-    auto month = take_digits(text, 2);
-    auto of_month = take_digits(text, 2);
-    return days_since_1970(*year, *month, *of_month);
+    const int year = take_digits(text, 4).value_or(0);
+    const int month = take_digits(text, 2).value_or(0);
+    return days_since_1970(year, month, take_digits(text, 2).value_or(0));
   }
   const bool year_first = digits == 4;
   const auto first = take_digits(text, 4);

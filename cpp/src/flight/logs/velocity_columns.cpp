@@ -213,7 +213,7 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
 bool smooth_climb(Flight& flight, std::vector<std::string>& notes) {
   const std::vector<double> time = files::read_quantity(flight, "time", UnitKind::time);
   const auto logged = files::find_quantity(flight, "altitude", UnitKind::length);
-  constexpr std::size_t fewest = 10;
+  constexpr std::size_t fewest_changes = 10;
   if (flight.is_mapped() || time.empty() || !logged) return false;
   const std::vector<double> altitude = logged->values();
   std::vector<std::size_t> all;
@@ -224,11 +224,12 @@ bool smooth_climb(Flight& flight, std::vector<std::string>& notes) {
     all.push_back(row);
     if (changes.empty() || altitude[row] != altitude[changes.back()]) changes.push_back(row);
   }
-  if (all.size() < fewest) return false;
+  if (all.size() < fewest_changes) return false;
   const auto parts_of = [&](const std::vector<std::size_t>& rows) {
     return find_parts(intervals_of(at_fixes(time, rows)));
   };
-  const bool is_held = changes.size() >= fewest && parts_of(changes).size() <= parts_of(all).size();
+  const bool is_held =
+      changes.size() >= fewest_changes && parts_of(changes).size() <= parts_of(all).size();
   const std::vector<std::size_t>& fixes = is_held ? changes : all;
   const std::vector<double> fixed = offsets(at_fixes(time, fixes), 1.0);
   const std::vector<double> intervals = intervals_of(fixed);
