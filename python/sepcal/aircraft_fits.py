@@ -555,7 +555,7 @@ class TwoSteps(Page):
         from sepcal.plotting import choose
 
         choose(what, ("path", "aero"))
-        step = self.path if what == "path" else self.aero
+        step: AircraftFit = getattr(self, what)
         return step.plot(backend=backend, theme=theme)
 
 

@@ -161,7 +161,7 @@ def test_field_options(magnetometer: Bench, options: tuple[str, ...], words: tup
             ("calibrate",),
             (
                 "'calibrate' is no verb",
-                "fit, compare, residuals, intervals, diagnose, add",
+                "fit, compare, residuals, intervals",
                 "--help",
             ),
         ),

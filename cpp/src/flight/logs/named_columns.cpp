@@ -65,7 +65,9 @@ void name_columns(Flight& flight, std::vector<std::string>& notes) {
   if (flight.find(files::flight_number) != nullptr) return;  // joined, each under these names
   std::vector<std::string> headers;
   for (const Flight::Column& column : flight.columns()) {
-    if (!is_exact(column.header)) headers.push_back(column.header);
+    // "temp_c" is a channel's name, by which effects know it.
+    const bool is_channel = column.header.starts_with("temp_");
+    if (!is_exact(column.header) && !is_channel) headers.push_back(column.header);
   }
   std::vector<std::string> taken;
   for (const KnownQuantity& quantity : files::known_quantities()) {
