@@ -54,13 +54,13 @@ TEST_CASE("the defaults are those of the documentation") {
 
 TEST_CASE("an unknown name is refused with the names that there are") {
   check_refused([](FitOptions& o) { o.bounds = {{"w_x", {-1, 1}}}; },
-                "no parameter 'w_x'; the model has: lambda_va, b_va");
+                "no parameter 'w_x'; did you mean 'w_n'? The model has: lambda_va, b_va");
   check_refused([](FitOptions& o) { o.fix = {{"w_x", 0}}; },
-                "no parameter 'w_x'; the model has: lambda_va");
+                "no parameter 'w_x'; did you mean 'w_n'? The model has: lambda_va");
   check_refused([](FitOptions& o) { o.noise = {{"vx", 1}}; },
-                "no output 'vx'; the model has: vn, ve, vd");
+                "no output 'vx'; did you mean 'vn'? The model has: vn, ve, vd");
   check_refused([](FitOptions& o) { o.prior = {{"w_x", {}}}; },
-                "no parameter 'w_x'; the model has: lambda_va");
+                "no parameter 'w_x'; did you mean 'w_n'? The model has: lambda_va");
   check_refused([](FitOptions& o) { o.sampling_distribution = {{"w_x", {}}}; },
                 "'w_x'; the model has: lambda_alpha");
   check_refused([](FitOptions& o) { o.sampling_distribution = {{"w_n", {}}}; },

@@ -152,6 +152,13 @@ int fit_head(std::span<const std::string_view> lines, const Layout& layout,
   return 2;
 }
 
+/// The length that most lines have; of two the longer one.
+std::map<std::size_t, std::size_t>::const_iterator commonest(
+    const std::map<std::size_t, std::size_t>& lengths) {
+  return std::ranges::max_element(
+      lengths, {}, [](const auto& length) { return std::pair(length.second, length.first); });
+}
+
 /// The cells that nearly all of the last rows have; 0 where these differ, or are few.
 std::size_t find_length_at_end(const Layout& layout,
                                const std::vector<std::optional<std::size_t>>& values) {
@@ -164,7 +171,7 @@ std::size_t find_length_at_end(const Layout& layout,
     ++rows;
     ++lengths[layout.lines[i - 1].size()];
   }
-  const auto usual = std::ranges::max_element(lengths, {}, [](auto& l) { return l.second; });
+  const auto usual = commonest(lengths);
   return rows >= fewest && 5 * usual->second >= 4 * rows ? usual->first : 0;
 }
 
@@ -218,7 +225,7 @@ Layout lay_out(std::span<const std::string_view> lines, const Delimiter& by,
       ++rows;
       ++lengths[layout.lines[i].size()];
     }
-    const auto usual = std::ranges::max_element(lengths, {}, [](auto& l) { return l.second; });
+    const auto usual = commonest(lengths);
     const std::size_t own = layout.lines[first].size();
     const bool goes_on = length_at_end == 0 || usual->first == length_at_end;
     if (!goes_on || 5 * rows < 4 * seen || (own != usual->first && own != usual->first + 1))

@@ -210,7 +210,7 @@ TEST_CASE("what an effect needs and the flight doesn't log is named") {
   refused("sidewash", {"effect sidewash needs p, which"});
   refused("density_error", {"effect density_error needs temperature, which"});
   refused("alpha_offset[q]", {"effect alpha_offset[q]", "'q' is constant"});
-  refused("wind[flaps]", {"effect wind[flaps]", "no channel 'flaps'", "the record has: time, "});
+  refused("wind[flaps]", {"effect wind[flaps]", "no channel 'flaps'", "he record has: time, "});
   refused("lift", {"there is no effect 'lift'; known: wind[driver], ", "upwash", "wind_shear"});
   refused("wind", {"effect 'wind' needs a driver: write wind[time] or wind[COLUMN]"});
 }

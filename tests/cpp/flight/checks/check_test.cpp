@@ -95,7 +95,7 @@ TEST_CASE("a speed in another unit than its header's is told with the unit") {
     CHECK(note.concern == Concern::wrong);
     CHECK(
         contains(note.found, std::string("as ") + slip.unit + " under the header " + slip.header));
-    CHECK(contains(note.advice, std::string(" to airspeed_") + slip.unit));
+    CHECK(contains(note.advice, std::string("airspeed_") + slip.unit + "="));
     CHECK(checked.notes.size() == 1);
   }
 }

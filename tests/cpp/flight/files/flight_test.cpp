@@ -102,7 +102,8 @@ TEST_CASE("arrays that don't fit are refused") {
 
 TEST_CASE("a file's faults come through, and progress ends at one") {
   const TemporaryFolder folder;
-  CHECK_THROWS_WITH_AS(read_csv(folder.write("a,b\n1\n")), Contains("line 2: 1 cells"), Error);
+  CHECK_THROWS_WITH_AS(read_csv(folder.write("a,b\n1,2\n\"3,4\n5,6\n")),
+                       Contains("line 3: the quote of cell 1"), Error);
   double last = 0;
   read_csv(folder.write("a\n1\n"), [&](double fraction) { last = fraction; });
   CHECK(last == 1);
@@ -173,11 +174,15 @@ TEST_CASE("a fault far down a long file has its line") {
   const std::string bytes = long_log(rows);
   const std::size_t at = find_line(bytes, 123'457);
   const auto with = [&](const std::string& line) { return std::string(bytes).insert(at, line); };
-  CHECK(refuse(folder, with("1,2,3\n")) ==
-        "flight.csv line 123457: 3 cells, but the header has 4 columns; complete the row or delete "
-        "it");
-  CHECK(refuse(folder, with("\n")) ==
-        "flight.csv line 123457: the line is blank, and rows follow; delete it");
+  const sepcal::Flight broken = read_csv(folder.write(with("1,2,3\n")));
+  CHECK(broken.rows() == rows + 1);
+  CHECK(std::isnan(broken.columns()[0].values[123'455]));
+  CHECK(broken.columns()[0].first_text->text == "3 cells in a row of 4");
+  CHECK(broken.locate(123'455).ends_with("flight.csv line 123457"));
+  const sepcal::Flight blank = read_csv(folder.write(with("\n")));
+  CHECK(blank.rows() == rows);
+  CHECK(blank.locate(123'455).ends_with("flight.csv line 123458"));
+  CHECK(blank.notes().front().ends_with("line 123457 is blank and is passed"));
   CHECK(refuse(folder, with("1,x,\"2,3\n")) ==
         "flight.csv line 123457: the quote of cell 3 is never closed; a quoted cell ends on its "
         "line");

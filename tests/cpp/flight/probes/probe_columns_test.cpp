@@ -159,7 +159,7 @@ TEST_CASE("missing columns, unknown units, quantities given twice") {
   CHECK(refuse(make_five_hole_log().rename("roll_rad", "roll").build())
             .starts_with("log: column 'roll_rad' is missing (roll_deg would do as well); 'roll' "
                          "says no unit that is known: map roll_rad=roll reads it in rad; known "
-                         "too: deg; the flight has: "));
+                         "too: deg; a quaternion from body to north-east-down would do as well: "));
   const Log without_unit = make_five_hole_log().rename("p_radps", "p_rpm");
   CHECK(refuse(without_unit.build(), {.lever_arm = true}) ==
         "log: column 'p_rpm' has no known unit; p may be logged as: p_radps, p_degps; map "
