@@ -114,7 +114,7 @@ def test_a_log_that_changes_on_the_way_is_noticed(tmp_path, monkeypatch):
 def test_a_bad_log_is_named_or_left_out(tmp_path):
     flights = write_fleet(tmp_path, 4)
     bad = tmp_path / "bad.csv"
-    bad.write_text(flights[0].read_text().replace("pt_pa", "pt_psia", 1))
+    bad.write_text(flights[0].read_text().replace("pt_pa", "pt_q", 1))
     missing = tmp_path / "missing.csv"
     with pytest.raises(
         sepcal.Error, match=r"flight '.*bad\.csv' can't be used: .*pt.* \(leave_out\)$"
