@@ -588,16 +588,17 @@ def load(
         >>> sepcal.load(folder / "base.json")["w_n"].value == base["w_n"].value
         True
     """
-    if _is_of_aircraft(file):
-        return read_fit(file)
+    name = name_of(file)
+    if _is_of_aircraft(name):
+        return read_fit(name)
     own = None if model is None else to_own(model)
     core = _core.read_calibration(
-        name_of(file), to_core_effects(effects), None if own is None else own._core
+        name, to_core_effects(effects), None if own is None else own._core
     )
     return Calibration(core, own=effects, own_model=own)
 
 
-def _is_of_aircraft(file: Path) -> bool:
+def _is_of_aircraft(file: str) -> bool:
     """Whether it says so; what can't be read is refused by who reads it in earnest."""
     try:
         with open(file, encoding="utf-8") as opened:

@@ -16,7 +16,6 @@ namespace sepcal::logs {
 namespace {
 
 using files::KnownQuantity;
-using files::Recognised;
 
 /// A column that may be a quantity.
 struct Claim {

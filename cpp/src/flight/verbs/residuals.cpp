@@ -92,7 +92,7 @@ ResidualTable tabulate(const Comparison& comparison, const std::vector<double>& 
 }
 
 /// Where a choice's conditions don't say it.
-std::string left_out(const LogChoice& choice) {
+std::string_view left_out(const LogChoice& choice) {
   return choice.drop_repeats.empty() ? "at an edge of what is used or no reading"
                                      : "between samples of a slow column, at an edge or no reading";
 }
