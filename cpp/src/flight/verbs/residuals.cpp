@@ -56,7 +56,7 @@ double noise_of(const std::vector<OutputValue>& noise, const std::string& output
   return found == noise.end() ? nothing : found->value;
 }
 
-using WhyNot = std::function<std::string(std::size_t row)>;
+using WhyNot = std::function<std::string_view(std::size_t row)>;
 
 ResidualTable tabulate(const Comparison& comparison, const std::vector<double>& logged,
                        const std::vector<OutputValue>& noise, const WhyNot& why_not) {
@@ -114,7 +114,7 @@ ResidualTable tabulate_residuals(const Calibration& calibration, const Flight& f
   const LogChoice choice = choice_for(calibration, flight, told_by_compare);
   const Flight read = read_as(flight, choice).flight;
   const logs::RowTruth is_taken = probes::rows_taken(*calibration.probe, read, choice);
-  return tabulate(comparison, time_of(read), calibration.fit.noise, [&](std::size_t row) {
+  return tabulate(comparison, time_of(read), calibration.fit.noise, [&](std::size_t row) -> std::string_view {
     return is_taken && !is_taken(row) ? "not among the rows that were chosen" : left_out(choice);
   });
 }
