@@ -39,7 +39,7 @@ Page command_help() {
       "  sepcal check flight.csv\n"
       "  sepcal mag fit flight.csv --field 19.7,-1.4,49.4 -o mag.json\n\n"
       "Options:\n"
-      "  -h, --help                  prints this; after a command or a verb, its own help\n"
+      "  -h, --help                  prints this; of a command or verb, its own help\n"
       "  --version                   prints the version\n",
       list_of(CommandKind::instrument), list_of(CommandKind::file), list_of(CommandKind::python));
 }

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
-from html import escape
+from html import escape, unescape
 from typing import LiteralString
 
 from sepcal.printing import in_line
@@ -29,6 +30,11 @@ def as_html(value: object) -> Html:
 def in_figure(text: object) -> str:
     """A name in one of Plotly's texts, which take some elements of HTML."""
     return escape(in_line(text))
+
+
+def as_read(text: str) -> str:
+    """What a figure's text shows, without its elements; <br> is a line's end."""
+    return unescape(re.sub(r"<[^<>]*>", "", text.replace("<br>", "\n")))
 
 
 def html(template: LiteralString, *values: object) -> Html:

@@ -61,6 +61,9 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
         "free": ("w_n",),
         "drop_invalid": True,
         "drop_repeats": ("vn_mps",),
+        "delimiter": ";",
+        "decimal": ".",
+        "join": "linear",
     }
     of_states = {"process_noise", "method", "hessian"}  # tests/python/test_aircraft.py
     assert set(options) == set(sepcal.FitOptions.__annotations__) - of_states

@@ -75,7 +75,7 @@ def test_metres_per_second_under_a_header_of_knots(tube: Bench) -> None:
     assert (note["kind"], note["concern"]) == ("units", "wrong")
     assert "airspeed_kt" in note["columns"]
     assert "as mps under the header airspeed_kt" in note["found"]
-    assert "rename airspeed_kt to airspeed_mps" in note["advice"]
+    assert "--map airspeed_mps=airspeed_kt" in note["advice"]
     fitted = tube.run("fit", "tube.csv")
     assert "as mps under the header airspeed_kt" in fitted.err
     assert fitted.err.startswith("note: tube.csv: ")

@@ -83,7 +83,7 @@ def test_help(app: str, verb: str, tmp_path: Path) -> None:
     # Usage and examples are to be copied, and stay in a line.
     assert max(len(line) for line in lines if " sepcal-" not in line) <= 80
     assert "Result and messages:" in lines
-    examples = lines[lines.index("Examples:") + 1 :]
+    examples = [line for line in lines[lines.index("Examples:") + 1 :] if line]
     assert len(examples) == 2
     for option in ("-h, --help", "-q, --quiet", "-v, --verbose", "--exit-zero", "--version"):
         assert sum(line.startswith(f"  {option} ") for line in lines) == 1, option

@@ -22,7 +22,7 @@ STREAM = re.compile(
     r"fmt::print\(|std::cout|std::cerr|std::clog|\bstd::fputs\(|\bstd::puts\(|\bstd::v?f?printf\("
     r"|\bstd::fwrite\([^;]*std(out|err)|::write\(STD"
 )
-FILE_WRITERS = r"^cpp/src/(flight/files/output_file|base/spool)\.cpp$"
+FILE_WRITERS = r"^(cpp/src/(flight/files/output_file|base/spool)|apps/manners)\.cpp$"
 PAGES = ("cpp/src/flight/text/*.cpp", "cpp/src/flight/*/*_text.cpp")
 
 

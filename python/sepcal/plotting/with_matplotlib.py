@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from html import unescape
 from io import BytesIO
 from typing import Any, TypeAlias
 
@@ -21,6 +20,7 @@ from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator, ScalarFormatter
 
 from sepcal.columns import Array
+from sepcal.markup import as_read
 from sepcal.reporting.page import Figure
 
 WIDTH, DPI = 960, 100  # [px], [px/inch]
@@ -487,7 +487,7 @@ def _luminance(colour: Any) -> float:  # noqa: ANN401
 def _plain(text: object) -> str:
     """Plotly's words as they are read: "1.2·10⁻⁷" of its markup."""
     raised = re.sub(r"<sup>(.*?)</sup>", lambda at: at[1].translate(RAISED), str(text))
-    return unescape(re.sub(r"<[^<>]*>", "", raised.replace("<br>", "\n")))
+    return as_read(raised)
 
 
 def _decade(value: float, _: object) -> str:

@@ -14,7 +14,7 @@ from sepcal import _core
 from sepcal.reading.extras import load
 from sepcal.reading.limits import Budget
 from sepcal.reading.pandas_hdf import pandas_frame, pandas_table
-from sepcal.reading.rates import join
+from sepcal.reading.rates import join_tables
 from sepcal.reading.table import Table
 from sepcal.reading.trees import Tree, tables_in
 from sepcal.reading.units import with_unit
@@ -36,7 +36,7 @@ def read(file: str, chosen: str | None) -> Table:
         raise
     except Exception as error:  # what h5py raises of damage is of any kind
         raise _core.Error(f"{file}: the HDF5 file is damaged or cut off: {error}") from error
-    return join(file, tables_in(tree), chosen)
+    return join_tables(file, tables_in(tree), chosen)
 
 
 class Reader:

@@ -15,7 +15,7 @@ from sepcal import _core
 from sepcal.reading import hdf5
 from sepcal.reading.extras import load
 from sepcal.reading.matlab_5 import read_variables
-from sepcal.reading.rates import join
+from sepcal.reading.rates import join_tables
 from sepcal.reading.table import Table
 from sepcal.reading.trees import Tree, tables_in
 
@@ -39,7 +39,7 @@ def read(file: str, chosen: str | None) -> Table:
     tables = tables_in(tree)
     if not tables and has_objects:
         raise _core.Error(f"{file}: {INSTEAD}")
-    return join(file, tables, chosen)
+    return join_tables(file, tables, chosen)
 
 
 def _plain(value: dict[str, Any]) -> Tree:

@@ -20,7 +20,7 @@ from sepcal.logs.attitude import smooth_signs
 from sepcal.reading.clock import TIME, seconds_of
 from sepcal.reading.extras import load
 from sepcal.reading.limits import Budget
-from sepcal.reading.rates import join
+from sepcal.reading.rates import join_tables
 from sepcal.reading.ros import known_columns
 from sepcal.reading.table import Table, listed
 
@@ -65,7 +65,7 @@ def read(file: str, chosen: str | None) -> Table:
     first = min((times.min() for _, times, _ in timed), default=np.datetime64(0, "ns"))
     day = first.astype("datetime64[D]")
     tables = [_to_table(topic, seconds_of(times - day), notes) for topic, times, notes in timed]
-    joined = join(file, [table for table in tables if len(table.columns) > 1], chosen)
+    joined = join_tables(file, [table for table in tables if len(table.columns) > 1], chosen)
     joined.notes.insert(0, f"time_s is seconds since {day} 00:00 UTC")
     joined.notes += [f"topic {name} is left out" for name in skipped[:6]]
     if cut:

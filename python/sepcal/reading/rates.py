@@ -47,7 +47,7 @@ def kinds_of(table: Table) -> set[str]:
     return kinds
 
 
-def join(file: str, tables: Sequence[Table], chosen: str | None = None) -> Table:
+def join_tables(file: str, tables: Sequence[Table], chosen: str | None = None) -> Table:
     """One table of several.
 
     Args:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from sepcal._core import HistoryEntry, Misfit
-from sepcal.markup import in_figure
+from sepcal.markup import html, in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 
@@ -137,7 +137,7 @@ def draw_heat_strip(
         ],
         "hovertemplate": "%{customdata}<br>%{z:.2f} times the noise<extra></extra>",
         "colorbar": {
-            "title": {"text": f"times the<br>{per}"}, "thickness": 10, "outlinewidth": 0,
+            "title": {"text": html("times the<br>{}", per)}, "thickness": 10, "outlinewidth": 0,
             "lenmode": "pixels", "len": 130, "y": 1, "yanchor": "top", "nticks": 4,
         },
         "text": [[words.number(value, 2) for value in row] if legible else [] for row in values],
