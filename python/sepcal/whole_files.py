@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from typing import BinaryIO, TextIO
 
 from sepcal import _core
 from sepcal.arguments import Misuse, shown
@@ -23,6 +24,16 @@ def name_of(file: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
     except UnicodeEncodeError:
         raise _core.Error(f"{in_line(name)}: the file's name is no UTF-8; rename it") from None
     return name
+
+
+def open_scratch_text(file: str) -> TextIO:
+    """A file in a temporary folder of our own, to be written as text."""
+    return open(file, "w", encoding="utf-8", newline="")
+
+
+def open_scratch(file: str) -> BinaryIO:
+    """The same, to be written as bytes."""
+    return open(file, "wb")
 
 
 def write_whole(texts: Mapping[str, str]) -> None:

@@ -19,6 +19,7 @@ from sepcal.reading.limits import Budget
 from sepcal.reading.rates import kinds_of
 from sepcal.reading.table import Table, listed
 from sepcal.reading.wanted import wanted
+from sepcal.whole_files import open_scratch_text
 
 WORKBOOK = "xl/workbook.xml"
 MOST_CELLS = 50_000_000
@@ -89,7 +90,7 @@ def _write_sheets(
 def _write(file: str, rows: Iterable[tuple[Any, ...]], sheet: Sheet, budget: Budget) -> None:
     """Writes the sheet as text without its empty rows; shorter rows end in empty cells."""
     cells = width = 0
-    with open(sheet.text, "w", encoding="utf-8", newline="") as opened:
+    with open_scratch_text(sheet.text) as opened:
         writer = csv.writer(opened, lineterminator="\n")
         for row in rows:
             end = len(row)

@@ -16,7 +16,7 @@ from sepcal.reading.excel import read_workbook
 from sepcal.reading.forms import TABLE, find_form
 from sepcal.reading.limits import Budget
 from sepcal.reading.table import Table, to_core
-from sepcal.whole_files import name_of
+from sepcal.whole_files import name_of, open_scratch
 
 READERS = {
     "parquet": ("arrow", "read_parquet"),
@@ -104,7 +104,7 @@ def _read_as(file: str, place: str, form: str, chosen: str | None, sha256: str) 
 def _unpack(file: str, target: str) -> None:
     budget = Budget(file)
     try:
-        with gzip.open(file) as opened, open(target, "wb") as unpacked:
+        with gzip.open(file) as opened, open_scratch(target) as unpacked:
             while piece := opened.read(CHUNK):
                 budget.take(len(piece), "it")
                 unpacked.write(piece)

@@ -243,7 +243,7 @@ TEST_CASE("what an own model can't be is said in a line") {
   CHECK_THROWS_AS(parse_calibration(to_json(base), "base.json", own_model("warm", HotWire{})),
                   Error);
   CHECK_THROWS_AS(export_calibration(base, nullptr, {}), Error);
-  flight.rename("u_mps", "u_furlongs");
+  flight.drop("u_mps");
   CHECK_THROWS_WITH_AS(calibrate(wire, flight), doctest::Contains("column 'u_mps' is missing"),
                        Error);
 }
