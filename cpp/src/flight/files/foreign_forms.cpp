@@ -43,9 +43,9 @@ bool is_upper_or_digit(char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c
 /// files).
 bool is_igc(std::string_view text) {
   const std::size_t end = text.find('\n');
-  return text.starts_with('A') && end != text.npos && end >= 4 &&
+  return text.starts_with('A') && end != std::string_view::npos && end >= 4 &&
          std::ranges::all_of(text.substr(1, 3), is_upper_or_digit) &&
-         (text.substr(end + 1).starts_with('H') || text.find("\nHFDTE") != text.npos);
+         (text.substr(end + 1).starts_with('H') || text.find("\nHFDTE") != std::string_view::npos);
 }
 
 /// "$GPRMC,": a sentence of NMEA 0183, of a talker and a kind in five letters.

@@ -12,6 +12,7 @@
 
 #include "flight/files/headers.hpp"
 #include "flight/files/known_names.hpp"
+#include "sepcal/detail/quantity.hpp"
 
 namespace sepcal::logs {
 namespace {

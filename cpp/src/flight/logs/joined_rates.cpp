@@ -140,8 +140,8 @@ struct ClockedLog {
 ClockedLog read_clocked(const Flight& flight) {
   ClockedLog log{read_as(flight, {}), {}};
   log.time = read_time(log.read.flight);
-  const auto column = files::find_quantity(log.read.flight, "time", files::UnitKind::time)->column;
-  const Flight::Column* const logged = flight.find(column->logged_header());
+  const auto time = files::find_quantity(log.read.flight, "time", files::UnitKind::time);
+  const Flight::Column* const logged = time ? flight.find(time->column->logged_header()) : nullptr;
   check_clock(flight, logged == nullptr ? std::span<const double>(log.time) : logged->values);
   return log;
 }
