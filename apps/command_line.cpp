@@ -63,9 +63,10 @@ void add_joining_options(CLI::App& join, Arguments& arguments) {
       ->required();
   add_file(join, "OTHER", arguments.other, "the log whose columns are brought to these rows")
       ->required();
-  join.add_option("--how", arguments.joining.how,
-                  "what stands in a row: a parabola through the samples about it, the straight line "
-                  "between two, or the earlier one")
+  join.add_option(
+          "--how", arguments.joining.how,
+          "what stands in a row: a parabola through the samples about it, the straight line "
+          "between two, or the earlier one")
       ->type_name("smooth|linear|held")
       ->capture_default_str();
   join.add_option("--offset", arguments.joining.offset, "what is added to OTHER's time [s]")

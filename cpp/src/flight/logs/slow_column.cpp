@@ -149,8 +149,8 @@ double SlowColumn::prediction_error(double width) const {
   return count == 0 ? infinity : sum / static_cast<double>(count);
 }
 
-/// The widest that predicts about as well as the best: the less noise a parabola keeps, the less its
-/// slope's is taken for what a shift in time would do.
+/// The widest that predicts about as well as the best: the less noise a parabola keeps, the less
+/// its slope's is taken for what a shift in time would do.
 void SlowColumn::choose_width() {
   std::array<double, widths.size()> errors{};
   std::ranges::transform(widths, errors.begin(),

@@ -131,12 +131,12 @@ double radius_of_readings(const Flight& flight) {
     if (!std::isfinite(columns[0][row] + columns[1][row] + columns[2][row])) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) readings[axis].push_back(columns[axis][row]);
   }
-  const auto ellipsoid = readings[0].empty()
-                             ? std::nullopt
-                             : fit_ellipsoid({readings[0], readings[1], readings[2]});
+  const auto ellipsoid =
+      readings[0].empty() ? std::nullopt : fit_ellipsoid({readings[0], readings[1], readings[2]});
   if (ellipsoid) return ellipsoid->radius();
-  throw OptionError({flight.name() + ": the readings lie on no ellipsoid, whose mean radius would be "
-                                     "the field's strength: turn the sensor all round, or give ",
+  throw OptionError({flight.name() +
+                         ": the readings lie on no ellipsoid, whose mean radius would be "
+                         "the field's strength: turn the sensor all round, or give ",
                      Option{"field_strength"}, " as a number in uT"});
 }
 

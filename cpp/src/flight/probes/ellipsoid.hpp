@@ -44,8 +44,8 @@ PointBox box_of(const Points& points);
 /// no ellipsoid.
 std::optional<Ellipsoid> fit_ellipsoid(const Points& points);
 
-/// Of the ellipsoid of the flight's readings mx, my, mz [uT, or the log's counts under that header];
-/// rows that lack one are left out. Throws Error where they lie on none.
+/// Of the ellipsoid of the flight's readings mx, my, mz [uT, or the log's counts under that
+/// header]; rows that lack one are left out. Throws Error where they lie on none.
 double radius_of_readings(const Flight& flight);
 
 /// |x|^2 = 2 n'x + c by linear least squares. Nothing where the points leave that open, or no

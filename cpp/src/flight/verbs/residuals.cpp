@@ -114,9 +114,11 @@ ResidualTable tabulate_residuals(const Calibration& calibration, const Flight& f
   const LogChoice choice = choice_for(calibration, flight, told_by_compare);
   const Flight read = read_as(flight, choice).flight;
   const logs::RowTruth is_taken = probes::rows_taken(*calibration.probe, read, choice);
-  return tabulate(comparison, time_of(read), calibration.fit.noise, [&](std::size_t row) -> std::string_view {
-    return is_taken && !is_taken(row) ? "not among the rows that were chosen" : left_out(choice);
-  });
+  return tabulate(comparison, time_of(read), calibration.fit.noise,
+                  [&](std::size_t row) -> std::string_view {
+                    return is_taken && !is_taken(row) ? "not among the rows that were chosen"
+                                                      : left_out(choice);
+                  });
 }
 
 ResidualTable tabulate_residuals(const Comparison& comparison, const Flight& flight,

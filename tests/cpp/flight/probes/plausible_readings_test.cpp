@@ -85,12 +85,9 @@ TEST_CASE("temperature, density and static pressure") {
   CHECK(describe("temp", UnitKind::temperature, {216, 310}) == silence);
   CHECK(describe("rho", UnitKind::density, {1.2, 1200}).ends_with("; check its unit"));
   CHECK(describe("rho", UnitKind::density, {0.09, 1.4}) == silence);
-  CHECK(describe("ps", UnitKind::pressure, {950, 1013}).find("hpa or psf") !=
-        std::string::npos);
-  CHECK(describe("ps", UnitKind::pressure, {700}).find("hpa or psf or torr") !=
-        std::string::npos);
-  CHECK(describe("ps", UnitKind::pressure, {14.7}).find("kpa or psi") !=
-        std::string::npos);
+  CHECK(describe("ps", UnitKind::pressure, {950, 1013}).find("hpa or psf") != std::string::npos);
+  CHECK(describe("ps", UnitKind::pressure, {700}).find("hpa or psf or torr") != std::string::npos);
+  CHECK(describe("ps", UnitKind::pressure, {14.7}).find("kpa or psi") != std::string::npos);
   CHECK(describe("ps", UnitKind::pressure, {2.2e4, 1.08e5}) == silence);
 }
 

@@ -18,9 +18,9 @@ class OutputFile : private std::streambuf {
  public:
   /// Opens the nameless file (Linux's O_TMPFILE; where the disc has none, a hidden one beside the
   /// target), so that a target that can't be written is known before the long work.
-  /// A symbolic link is followed; a device, a pipe and /dev/stdout are written directly. Throws Error
-  /// where the target's folder isn't there, the target is a folder or a loop of symbolic links, or
-  /// writing isn't permitted.
+  /// A symbolic link is followed; a device, a pipe and /dev/stdout are written directly. Throws
+  /// Error where the target's folder isn't there, the target is a folder or a loop of symbolic
+  /// links, or writing isn't permitted.
   explicit OutputFile(std::filesystem::path target);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

@@ -18,9 +18,9 @@ struct ReadFlight {
 /// The log's columns as `choice` maps and ignores them; those that clearly are a quantity under
 /// another name under sepcal's ("GPS_VN (m/s)": vn_mps); clocks that start anew joined; attitude
 /// from a quaternion (qw, qx, qy, qz, body to north-east-down) where no angles are logged; velocity
-/// from speed and track (gs_mps, track_deg, vs_mps) or from positions (lat_deg, lon_deg, altitude_m)
-/// where none is; time from the GPS's week; of pt, ps and dp the missing one. Rows are those of the
-/// log. Throws OptionError for a choice of columns that are not there.
+/// from speed and track (gs_mps, track_deg, vs_mps) or from positions (lat_deg, lon_deg,
+/// altitude_m) where none is; time from the GPS's week; of pt, ps and dp the missing one. Rows are
+/// those of the log. Throws OptionError for a choice of columns that are not there.
 ReadFlight read_as(const Flight& flight, const LogChoice& choice);
 
 }  // namespace sepcal
