@@ -14,15 +14,19 @@ void append_number(std::string& line, double value) {
   line.append(text.data(), end);
 }
 
+void append_text(std::string& line, std::string_view text) {
+  const bool is_quoted = text.find_first_of(",\"") != std::string_view::npos ||
+                         text.starts_with(' ') || text.ends_with(' ');
+  if (is_quoted) line += '"';
+  for (const char c : text) line.append(is_quoted && c == '"' ? 2 : 1, c);
+  if (is_quoted) line += '"';
+}
+
 std::string join_cells(const std::vector<std::string>& cells) {
   std::string line;
   for (const std::string& cell : cells) {
     if (&cell != &cells.front()) line += ',';
-    const bool is_quoted = cell.find_first_of(",\"") != std::string::npos ||
-                           cell.starts_with(' ') || cell.ends_with(' ');
-    if (is_quoted) line += '"';
-    for (const char c : cell) line.append(is_quoted && c == '"' ? 2 : 1, c);
-    if (is_quoted) line += '"';
+    append_text(line, cell);
   }
   return line;
 }

@@ -316,10 +316,11 @@ class Recogniser {
         rows_.push_back(cells);
       }
     }
+    shown_ = rows_;
     const std::size_t step = std::max<std::size_t>(1, (all_.size() - lines_.size()) / most_later);
     for (std::size_t i = lines_.size(); i < all_.size(); i += step) {
       auto cells = cut(all_[i], form_.delimiter, texts_);
-      if (cells.size() == layout_.cells) later_.push_back(std::move(cells));
+      if (cells.size() == layout_.cells) shown_.push_back(std::move(cells));
     }
     if (form_.delimiter != ',' && layout_.cells > 1) {
       note(fmt::format("{} part the columns", layout_.by->name));
@@ -346,7 +347,7 @@ class Recogniser {
     std::string_view either;
     bool comma = false;
     bool point = false;
-    for (const auto& row : all_rows()) {
+    for (const auto& row : shown_) {
       for (const std::string_view cell : row) {
         const std::size_t suffix = find_suffix(cell);
         const NumberLook look =
@@ -431,16 +432,9 @@ class Recogniser {
     }
   }
 
-  /// Those that the table begins with, and some of later ones.
-  SampledRows all_rows() const {
-    SampledRows rows = rows_;
-    rows.insert(rows.end(), later_.begin(), later_.end());
-    return rows;
-  }
-
   bool is_empty(std::size_t cell) const {
     return std::ranges::all_of(
-        all_rows(), [&](const auto& row) { return cell >= row.size() || row[cell].empty(); });
+        shown_, [&](const auto& row) { return cell >= row.size() || row[cell].empty(); });
   }
 
   /// 0, 1, 2 ... or 1, 2, 3 ...: rows that are numbered.
@@ -523,13 +517,12 @@ class Recogniser {
 
   void find_suffixes() {
     std::vector<std::string> with;
-    const SampledRows all = all_rows();
     for (ColumnForm& column : form_.columns) {
       if (column.header == "maneuver") continue;  // labels
       std::string suffix;
       std::size_t such = 0;
       std::size_t filled = 0;
-      for (const auto& row : all) {
+      for (const auto& row : shown_) {
         if (column.cell >= row.size() || is_missing(row[column.cell])) continue;
         const std::string_view cell = row[column.cell];
         ++filled;
@@ -567,7 +560,7 @@ class Recogniser {
   std::deque<std::string> texts_;            // keeps what views point to
   Layout layout_;
   SampledRows rows_;   // of these lines
-  SampledRows later_;  // of some others
+  SampledRows shown_;  // the same and some of later lines
   std::vector<std::string> names_;
   std::vector<std::string> units_;
   TableForm form_;

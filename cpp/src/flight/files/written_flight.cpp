@@ -2,26 +2,11 @@
 #include "flight/files/written_flight.hpp"
 
 #include <string>
-#include <string_view>
 
 #include "base/stop.hpp"
 #include "flight/files/csv_cells.hpp"
 
 namespace sepcal::files {
-namespace {
-
-void append_text(std::string& line, std::string_view text) {
-  if (text.find_first_of(",\"") == std::string_view::npos) {
-    line += text;
-    return;
-  }
-  line += '"';
-  for (const char c : text) line += c == '"' ? std::string(2, c) : std::string(1, c);
-  line += '"';
-}
-
-}  // namespace
-
 void write_flight(const Flight& flight, OutputFile& target) {
   const auto labels = flight.maneuvers();
   std::string line;
