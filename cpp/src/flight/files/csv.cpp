@@ -144,8 +144,9 @@ bool CsvReader::repeats_header() const {
 bool CsvReader::breaks_off(bool whole) const {
   if (!lines_->was_cut()) return false;
   if (!whole) return true;
-  return form_->last_decimals > 0 && files::count_decimals(row_->cells()[form_->cells - 1],
-                                                           form_->decimal) < form_->last_decimals;
+  return form_->last_decimals > 0 &&
+         files::count_decimals(row_->cells()[form_->cells - 1], form_->last_marks.decimal) <
+             form_->last_decimals;
 }
 
 std::span<const std::string_view> CsvReader::cells() const { return cells_; }

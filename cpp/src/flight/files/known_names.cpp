@@ -310,6 +310,8 @@ constexpr std::array other_units{
     OtherName{"gauss", "gs"},
     OtherName{"mgauss", "mg"},
     OtherName{"mgauss", "milligauss"},
+    OtherName{"t", "tesla"},
+    OtherName{"mt", "millitesla"},
     OtherName{"ut", "microtesla"},
     OtherName{"nt", "nanotesla"},
     OtherName{"hpa", "mbar"},

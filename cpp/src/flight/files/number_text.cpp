@@ -65,6 +65,33 @@ std::string without(std::string_view text, std::string_view marks) {
   return left;
 }
 
+/// Whether marks of groups stand in the digits before the decimals alone, each kind in threes.
+bool are_groups(std::string_view mantissa, const NumberMarks& marks) {
+  if (mantissa.find_first_of(marks.groups) == std::string_view::npos) return true;
+  const std::string_view whole = mantissa.substr(0, mantissa.find(marks.decimal));
+  if (mantissa.substr(whole.size()).find_first_of(marks.groups) != std::string_view::npos) {
+    return false;
+  }
+  return std::ranges::all_of(marks.groups, [&](char mark) {
+    if (whole.find(mark) == std::string_view::npos) return true;
+    std::string others = marks.groups;
+    std::erase(others, mark);
+    return groups_by(without(whole, others), mark);
+  });
+}
+
+/// The usual number of few digits, without a copy on the heap.
+std::optional<double> parse_short(std::string_view cell, char decimal) {
+  std::array<char, 32> text{};
+  if (cell.size() > text.size()) return std::nullopt;
+  for (std::size_t i = 0; i < cell.size(); ++i) {
+    const char c = cell[i];
+    if (c != decimal && !is_digit(c) && c != '-') return std::nullopt;
+    text[i] = c == decimal ? '.' : c;
+  }
+  return parse_number({text.data(), cell.size()});
+}
+
 }  // namespace
 
 NumberLook look_at_number(std::string_view cell) {
@@ -83,6 +110,7 @@ NumberLook look_at_number(std::string_view cell) {
     if (!groups_by(digits.substr(0, digits.find_first_of(".,")), mark)) return {};
     look.groups += mark;
   }
+  if (digits.back() == ',') return {};  // punctuation of a text
   digits = without(digits, look.groups);
   const auto commas = std::ranges::count(digits, ',');
   const auto points = std::ranges::count(digits, '.');
@@ -102,24 +130,27 @@ NumberLook look_at_number(std::string_view cell) {
     look.decimal_comma = !look.either;
   }
   look.is_number =
-      parse_number_as(text, look.decimal_comma || look.either ? ',' : '.', look.groups).has_value();
+      parse_number_as(text, {look.decimal_comma || look.either ? ',' : '.', look.groups})
+          .has_value();
   return look.is_number ? look : NumberLook{};
 }
 
-std::optional<double> parse_number_as(std::string_view cell, char decimal,
-                                      std::string_view groups) {
-  if (decimal == '.' && groups.empty()) {
+std::optional<double> parse_number_as(std::string_view cell, const NumberMarks& marks) {
+  if (marks.is_plain()) {
     const auto number = parse_number(cell);
     const bool is_odd = cell.find('\xE2') != std::string_view::npos ||
                         cell.find_first_of("dD") != std::string_view::npos;
     if (number || !is_odd) return number;
   }
-  std::string text = with_e(without(in_ascii(cell), groups));
-  if (decimal == ',') {
-    if (text.find('.') != std::string::npos) return std::nullopt;
-    std::ranges::replace(text, ',', '.');
+  if (const auto number = parse_short(cell, marks.decimal)) return number;
+  const std::string text = in_ascii(cell);
+  if (!are_groups(mantissa_of(text), marks)) return std::nullopt;
+  std::string digits = with_e(without(text, marks.groups));
+  if (marks.decimal == ',') {
+    if (digits.find('.') != std::string::npos) return std::nullopt;
+    std::ranges::replace(digits, ',', '.');
   }
-  return parse_number(text);
+  return parse_number(digits);
 }
 
 int count_decimals(std::string_view cell, char decimal) {

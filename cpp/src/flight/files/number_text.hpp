@@ -19,9 +19,18 @@ struct NumberLook {
 
 NumberLook look_at_number(std::string_view cell);
 
-/// The finite number that `cell` is under these marks; as parse_number() where they are "." and "",
-/// but with an exponent behind D too.
-std::optional<double> parse_number_as(std::string_view cell, char decimal, std::string_view groups);
+/// What parts decimals, and what parts thousands.
+struct NumberMarks {
+  char decimal = '.';
+  std::string groups = {};
+
+  /// Whether numbers are written as C++ writes them.
+  bool is_plain() const { return decimal == '.' && groups.empty(); }
+};
+
+/// The finite number that `cell` is under these marks, where digits that are parted stand in groups
+/// of three; as parse_number() where the marks are plain, but with an exponent behind D too.
+std::optional<double> parse_number_as(std::string_view cell, const NumberMarks& marks);
 
 /// "2.50": 2, "7": 0; -1 of what is no number.
 int count_decimals(std::string_view cell, char decimal);

@@ -284,7 +284,8 @@ class Recogniser {
     read_head();
     name_columns();
     find_suffixes();
-    find_time(form_, rows_, asked_.mapped);
+    note_marks();
+    find_time(form_, rows_, shown_, asked_.mapped);
     number_decimals();
     return std::move(form_);
   }
@@ -341,46 +342,118 @@ class Recogniser {
     layout_.first_row = head + 1;
   }
 
-  /// What parts decimals and thousands.
-  void find_numbers() {
-    std::string groups;
-    std::string_view either;
-    bool comma = false;
-    bool point = false;
+  /// What the numbers of one cell of all rows show.
+  struct Shown {
+    bool comma = false;             // parts decimals
+    bool point = false;             // does
+    bool may_group = true;          // every point stands as if it parted thousands
+    std::string_view either = {};   // a number whose comma may part decimals or thousands
+    std::string_view pointed = {};  // one with a point
+    std::string groups = {};
+  };
+
+  std::vector<Shown> look_at_numbers() {
+    std::vector<Shown> shown(layout_.cells + 1);
     for (const auto& row : shown_) {
-      for (const std::string_view cell : row) {
+      for (std::size_t i = 0; i < std::min(row.size(), shown.size()); ++i) {
+        const std::string_view cell = row[i];
         const std::size_t suffix = find_suffix(cell);
-        const NumberLook look =
-            look_at_number(suffix == std::string_view::npos ? cell : cell.substr(0, suffix));
+        const std::string_view number =
+            suffix == std::string_view::npos ? cell : cell.substr(0, suffix);
+        const NumberLook look = look_at_number(number);
         if (!look.is_number) continue;
+        Shown& column = shown[i];
         form_.is_odd = form_.is_odd || look.is_odd;
-        comma = comma || look.decimal_comma;
-        point = point || (cell.find('.') != std::string_view::npos && look.groups != ".");
-        if (look.either) either = cell;
+        column.comma = column.comma || look.decimal_comma;
+        if (number.find('.') != std::string_view::npos &&
+            look.groups.find('.') == std::string::npos) {
+          column.point = true;
+          column.pointed = number;
+          column.may_group = column.may_group && parse_number_as(number, {',', "."}).has_value();
+        }
+        if (look.either) column.either = cell;
         for (const char mark : look.groups) {
-          if (groups.find(mark) == std::string::npos) groups += mark;
+          if (column.groups.find(mark) == std::string::npos) column.groups += mark;
         }
       }
     }
+    return shown;
+  }
+
+  /// What parts decimals and thousands, a column: files are put together from sources that differ.
+  void find_numbers() {
     if (!asked_.decimal.empty() && asked_.decimal != "," && asked_.decimal != ".") {
       throw OptionError({Option{"decimal"}, " is '.' or ',', not '" + asked_.decimal + "'"});
     }
-    const bool grouped_by_comma = groups.find(',') != std::string::npos;
-    if (!asked_.decimal.empty()) {
-      comma = asked_.decimal == ",";
-    } else if (!either.empty() && !comma && !point && !grouped_by_comma) {
-      throw OptionError(
-          {fmt::format("{}: '{}' is a number with decimals or with thousands: say ", file_, either),
-           Option{"decimal"}, " ',' or ", Option{"decimal"}, " '.'"});
+    const std::vector<Shown> shown = look_at_numbers();
+    const auto shows = [&](char group) {
+      return std::ranges::any_of(shown, [group](const Shown& column) {
+        return column.groups.find(group) != std::string::npos;
+      });
+    };
+    const bool comma = std::ranges::any_of(shown, &Shown::comma) || shows('.');
+    const bool point = shows(',') || std::ranges::any_of(shown, [](const Shown& column) {
+                         return column.point && !column.may_group;
+                       });
+    const bool alone = comma != point;  // one mark in all columns that tell
+    for (const Shown& column : shown) {
+      NumberMarks marks{.decimal = comma && !point ? ',' : '.', .groups = column.groups};
+      if (column.comma || column.groups.find('.') != std::string::npos) {
+        marks.decimal = ',';
+        if (column.point && column.may_group) marks.groups += '.';
+      } else if (column.point && comma && column.may_group) {
+        marks.decimal = decide(column.pointed, alone && shows('.') ? ',' : '\0');
+        if (marks.decimal == ',') marks.groups += '.';
+      } else if (column.point) {
+        marks.decimal = '.';
+      } else if (!column.either.empty() && column.groups.empty()) {
+        marks.decimal = decide(column.either, alone ? (comma ? ',' : '.') : '\0');
+      }
+      if (marks.decimal == '.' && !column.either.empty()) add_group(marks, ',');
+      for (const Shown& other : shown) {  // of a column that has shown no thousands yet
+        if (other.comma == (marks.decimal == ',')) {
+          for (const char mark : other.groups) add_group(marks, mark);
+        }
+      }
+      std::erase(marks.groups, marks.decimal);
+      marks_.push_back(std::move(marks));
     }
-    form_.decimal = comma ? ',' : '.';
-    if (!comma && !either.empty() && !grouped_by_comma) groups += ',';
-    std::erase(groups, form_.decimal);
-    form_.thousands = groups;
-    if (comma) note("a comma is the decimal mark");
-    if (!groups.empty()) {
-      note(fmt::format("'{}' parts thousands", fmt::join(groups, "' and '")));
+  }
+
+  static void add_group(NumberMarks& marks, char mark) {
+    if (marks.groups.find(mark) == std::string::npos) marks.groups += mark;
+  }
+
+  /// The decimal mark of a column with a number that may be read in two ways.
+  char decide(std::string_view number, char shown_by_others) const {
+    if (!asked_.decimal.empty()) return asked_.decimal.front();
+    if (shown_by_others != '\0') return shown_by_others;
+    throw OptionError(
+        {fmt::format("{}: '{}' is a number with decimals or with thousands: say ", file_, number),
+         Option{"decimal"}, " ',' or ", Option{"decimal"}, " '.'"});
+  }
+
+  void note_marks() {
+    std::vector<std::string> with_comma;
+    bool all = true;
+    std::string groups;
+    for (const ColumnForm& column : form_.columns) {
+      if (column.marks.decimal == ',') {
+        with_comma.push_back(column.logged);
+      } else {
+        all = false;
+      }
+      for (const char mark : column.marks.groups) {
+        if (groups.find(mark) == std::string::npos) groups += mark;
+      }
     }
+    if (all && !with_comma.empty()) {
+      note("a comma is the decimal mark");
+    } else if (!with_comma.empty()) {
+      note(fmt::format("a comma is the decimal mark of {}, a point that of the others",
+                       fmt::join(with_comma, ", ")));
+    }
+    if (!groups.empty()) note(fmt::format("'{}' parts thousands", fmt::join(groups, "' and '")));
   }
 
   /// The lines above the rows that have as many cells, and whose comments have.
@@ -473,8 +546,10 @@ class Recogniser {
         logged = fmt::format("column_{}", cell + 1);
         if (form_.header_line > 0) note(fmt::format("a column without a name is {}", logged));
       }
-      form_.columns.push_back(
-          {.header = with_unit(logged, units_[cell]), .logged = logged, .cell = cell});
+      form_.columns.push_back({.header = with_unit(logged, units_[cell]),
+                               .logged = logged,
+                               .cell = cell,
+                               .marks = marks_[cell]});
     }
     number_doubles();
   }
@@ -542,9 +617,11 @@ class Recogniser {
   }
 
   void number_decimals() {
+    if (form_.cells == 0) return;
+    form_.last_marks = marks_[form_.cells - 1];
     for (const auto& row : rows_) {
       if (row.empty() || row.size() < form_.cells) continue;
-      const int decimals = count_decimals(row[form_.cells - 1], form_.decimal);
+      const int decimals = count_decimals(row[form_.cells - 1], form_.last_marks.decimal);
       const bool first = &row == &rows_.front();
       form_.last_decimals = first || form_.last_decimals == decimals ? decimals : -1;
       if (form_.last_decimals < 0) return;
@@ -559,8 +636,9 @@ class Recogniser {
   std::span<const std::string_view> lines_;  // of all, those that are looked at closely
   std::deque<std::string> texts_;            // keeps what views point to
   Layout layout_;
-  SampledRows rows_;   // of these lines
-  SampledRows shown_;  // the same and some of later lines
+  SampledRows rows_;                // of these lines
+  SampledRows shown_;               // the same and some of later lines
+  std::vector<NumberMarks> marks_;  // of each cell
   std::vector<std::string> names_;
   std::vector<std::string> units_;
   TableForm form_;
@@ -583,12 +661,9 @@ bool is_whole(const TableForm& form, std::span<const std::string_view> cells) {
 }
 
 bool TableForm::is_plain() const {
-  if (delimiter != ',' || decimal != '.' || !thousands.empty() || is_odd ||
-      columns.size() != cells) {
-    return false;
-  }
+  if (delimiter != ',' || is_odd || columns.size() != cells) return false;
   return std::ranges::all_of(columns, [](const ColumnForm& column) {
-    return column.kind == CellKind::number && column.suffix.empty();
+    return column.kind == CellKind::number && column.suffix.empty() && column.marks.is_plain();
   });
 }
 
@@ -604,6 +679,12 @@ std::optional<double> read_number(const TableForm& form, const ColumnForm& colum
     case CellKind::clock:
       if (const auto seconds = parse_clock(cell)) return *seconds * column.scale;
       return std::nullopt;
+    case CellKind::packed_clock: {
+      const auto packed = parse_number_as(cell, column.marks);
+      if (!packed) return std::nullopt;
+      const double minutes = std::floor(*packed / 100.0);
+      return *packed - 40.0 * minutes - 2400.0 * std::floor(minutes / 100.0);
+    }
     case CellKind::date_time: {
       const auto stamp = parse_date_time(cell, column.order);
       if (!stamp) return std::nullopt;
@@ -617,7 +698,7 @@ std::optional<double> read_number(const TableForm& form, const ColumnForm& colum
       return (*days - column.first_day) * day + *seconds;
     }
     case CellKind::counted: {
-      const auto count = parse_number_as(cell, form.decimal, form.thousands);
+      const auto count = parse_number_as(cell, column.marks);
       return count ? std::optional((*count - column.origin) * column.scale) : std::nullopt;
     }
     case CellKind::number:
@@ -627,7 +708,7 @@ std::optional<double> read_number(const TableForm& form, const ColumnForm& colum
     cell.remove_suffix(column.suffix.size());
     while (cell.ends_with(' ')) cell.remove_suffix(1);
   }
-  return parse_number_as(cell, form.decimal, form.thousands);
+  return parse_number_as(cell, column.marks);
 }
 
 }  // namespace sepcal::files

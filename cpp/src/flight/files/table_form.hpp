@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "flight/files/number_text.hpp"
 #include "flight/files/time_text.hpp"
 #include "sepcal/flight/csv.hpp"
 
@@ -18,16 +19,18 @@ namespace sepcal::files {
 /// How a column's cells give numbers.
 enum class CellKind {
   number,
-  clock,      // time of day
-  date_time,  // in one cell
-  dated,      // a date in one cell, the time of day in another
-  counted     // time as a count since an epoch
+  clock,         // time of day
+  packed_clock,  // as a number, HHMMSS
+  date_time,     // in one cell
+  dated,         // a date in one cell, the time of day in another
+  counted        // time as a count since an epoch
 };
 
 struct ColumnForm {
   std::string header;    // unique and not empty
   std::string logged;    // the header as the file has it
   std::size_t cell = 0;  // which of a row's
+  NumberMarks marks = {};
   CellKind kind = CellKind::number;
   std::string suffix = {};    // a unit that stands in each cell behind the number
   std::size_t date_cell = 0;  // of `dated`
@@ -39,15 +42,14 @@ struct ColumnForm {
 };
 
 struct TableForm {
-  char delimiter = ',';  // ' ': runs of blanks
-  char decimal = '.';
-  std::string thousands = {};   // marks between groups of digits
+  char delimiter = ',';         // ' ': runs of blanks
   bool is_odd = false;          // some have a minus or an exponent of another kind
   std::size_t cells = 0;        // of a row
   bool one_more = false;        // an empty cell may stand at a row's end
   std::size_t header_line = 0;  // counted from 1; 0: there is none
   std::size_t first_row = 1;    // its line
-  int last_decimals = -1;       // of the last cell of all rows seen; -1: they differ
+  NumberMarks last_marks = {};  // of the last cell
+  int last_decimals = -1;       // of all rows seen; -1: they differ
   std::vector<ColumnForm> columns = {};
   std::vector<std::string> notes = {};
 

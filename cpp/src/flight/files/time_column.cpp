@@ -232,13 +232,15 @@ std::optional<Epoch> find_epoch(double count, double step) {
   constexpr double year_2000 = 946'684'800.0;
   constexpr double year_2100 = 4'102'444'800.0;
   constexpr std::array epochs{Epoch{1.0, 0.0, "seconds"}, Epoch{1e-3, 0.0, "milliseconds"},
-                              Epoch{1e-6, 0.0, "microseconds"}, Epoch{1e-9, 0.0, "nanoseconds"}};
+                              Epoch{1e-6, 0.0, "microseconds"}, Epoch{1e-9, 0.0, "nanoseconds"},
+                              Epoch{1e-7, 116'444'736e9, "0.1 microseconds (Windows')"}};
   for (const Epoch& epoch : epochs) {
-    const double seconds = count * epoch.scale;
+    const double seconds = (count - epoch.first) * epoch.scale;
     if (seconds >= year_2000 && seconds < year_2100) return epoch;
   }
   constexpr std::array calendars{Epoch{day, 25'569.0, "days (a spreadsheet's)"},
-                                 Epoch{day, 719'529.0, "days (MATLAB's)"}};
+                                 Epoch{day, 719'529.0, "days (MATLAB's)"},
+                                 Epoch{day, 2'440'587.5, "days (Julian)"}};
   constexpr double longest = 60.0;  // s from row to row; what steps on farther is no count of days
   for (const Epoch& epoch : calendars) {
     const double seconds = (count - epoch.first) * epoch.scale;
@@ -247,10 +249,10 @@ std::optional<Epoch> find_epoch(double count, double step) {
   return std::nullopt;
 }
 
-std::vector<double> numbers_of(const TableForm& form, const std::vector<std::string_view>& cells) {
+std::vector<double> numbers_of(const SampledRows& rows, const ColumnForm& column) {
   std::vector<double> numbers;
-  for (const std::string_view cell : cells) {
-    if (const auto number = parse_number_as(cell, form.decimal, form.thousands)) {
+  for (const std::string_view cell : cells_of(rows, column.cell)) {
+    if (const auto number = parse_number_as(cell, column.marks)) {
       numbers.push_back(*number);
     }
   }
@@ -277,13 +279,36 @@ bool shows_seconds(const std::vector<double>& numbers) {
 bool take_seconds(TableForm& form, const SampledRows& rows, ColumnForm& column) {
   const std::vector<std::string> words = split_words(column.logged);
   if (std::ranges::find(words, "utc") != words.end()) return false;  // "100001.2" is 10:00:01.2
-  if (!shows_seconds(numbers_of(form, cells_of(rows, column.cell)))) return false;
+  if (!shows_seconds(numbers_of(rows, column))) return false;
   become_time(form, column, CellKind::number, "whose fractions are of seconds");
   return true;
 }
 
+/// "105630.5" is 10:56:30.5 where no seconds or minutes from 60 to 99 turn up, and a minute ends.
+bool take_packed_clock(TableForm& form, const SampledRows& shown, ColumnForm& column) {
+  constexpr std::size_t fewest = 12;
+  const std::vector<double> numbers = numbers_of(shown, column);
+  const auto is_clock = [](double number) {
+    const double seconds = std::fmod(number, 100.0);
+    const double minutes = std::fmod(std::floor(number / 100.0), 100.0);
+    return number >= 0.0 && number < 240'000.0 && seconds < 60.0 && minutes < 60.0;
+  };
+  const auto ends_minute = [](double before, double after) {
+    return std::floor(before / 100.0) != std::floor(after / 100.0);
+  };
+  if (numbers.size() < fewest || numbers.back() == numbers.front() ||
+      !std::ranges::all_of(numbers, is_clock) ||
+      std::ranges::adjacent_find(numbers, ends_minute) == numbers.end()) {
+    return false;
+  }
+  column.is_of_day = true;
+  become_time(form, column, CellKind::packed_clock,
+              "a time of day as HHMMSS, in seconds since midnight");
+  return true;
+}
+
 bool take_count(TableForm& form, const SampledRows& rows, ColumnForm& column) {
-  const std::vector<double> numbers = numbers_of(form, cells_of(rows, column.cell));
+  const std::vector<double> numbers = numbers_of(rows, column);
   const auto step = find_step(numbers);
   if (!step) return false;
   const auto epoch = find_epoch(numbers.front(), *step);
@@ -307,16 +332,16 @@ bool is_time_text(std::string_view cell) {
          parse_date(cell, order) || parse_date(cell, american);
 }
 
-void find_time(TableForm& form, const SampledRows& rows, const std::vector<std::string>& mapped) {
-  const auto is_number = [&](std::string_view cell) {
-    return parse_number_as(cell, form.decimal, form.thousands).has_value();
-  };
+void find_time(TableForm& form, const SampledRows& rows, const SampledRows& shown,
+               const std::vector<std::string>& mapped) {
   const auto is_stamp = [](std::string_view cell) -> bool {
     return parse_date_time(cell, DateOrder::day_first) ||
            parse_date_time(cell, DateOrder::month_first);
   };
   const auto is_of_numbers = [&](const ColumnForm& column) {
-    return are_mostly(cells_of(rows, column.cell), is_number);
+    return are_mostly(cells_of(rows, column.cell), [&](std::string_view cell) {
+      return parse_number_as(cell, column.marks).has_value();
+    });
   };
   const auto is_mapped = [&](const ColumnForm& column) {
     return std::ranges::find(mapped, column.logged) != mapped.end() && is_of_numbers(column);
@@ -359,7 +384,10 @@ void find_time(TableForm& form, const SampledRows& rows, const std::vector<std::
   }
   for (ColumnForm& column : form.columns) {
     if (!is_called_time(column) || is_mapped(column)) continue;
-    if (take_count(form, rows, column) || take_seconds(form, rows, column)) return;
+    if (take_packed_clock(form, shown, column) || take_count(form, rows, column) ||
+        take_seconds(form, rows, column)) {
+      return;
+    }
   }
 }
 

@@ -60,8 +60,27 @@ double take_half_day(std::string_view& text, int hours) {
   return half == "am" && hours == 12 ? -12.0 : 0.0;
 }
 
+/// Takes "162:" of a day of the year before a clock: seconds since the year's first day began.
+double take_day_of_year(std::string_view& text) {
+  constexpr std::size_t digits = 3;
+  if (text.find_first_not_of("0123456789") != digits || text[digits] != ':') return 0.0;
+  const int day_of_year = take_digits(text, digits).value_or(1);
+  text.remove_prefix(1);
+  return (day_of_year - 1) * 24.0 * hour;
+}
+
+/// Takes ".25", ",25" or, after a clock's colon, ":250".
+std::optional<double> take_fraction_of_second(std::string_view& text) {
+  constexpr double milli = 1e-3;
+  if (!take(text, ":")) return take_fraction(text);
+  if (text.find_first_not_of("0123456789") < 3) return std::nullopt;
+  const auto milliseconds = take_digits(text, 3);
+  return milliseconds ? std::optional(milli * *milliseconds) : std::nullopt;
+}
+
 /// Takes a time of day; the rest is left.
 std::optional<double> take_clock(std::string_view& text) {
+  const double days = take_day_of_year(text);
   const auto first = take_digits(text, 2);
   if (!first || !take(text, ":")) return std::nullopt;
   const auto second = take_digits(text, 2);
@@ -75,10 +94,10 @@ std::optional<double> take_clock(std::string_view& text) {
   }
   const auto seconds = take_digits(text, 2);
   if (!seconds || *second >= 60 || *seconds > 60) return std::nullopt;
-  const auto fraction = take_fraction(text);
+  const auto fraction = take_fraction_of_second(text);
   if (!fraction) return std::nullopt;
   const double hours = *first + take_half_day(text, *first);
-  return hours * hour + *second * minute + *seconds + *fraction;
+  return days + hours * hour + *second * minute + *seconds + *fraction;
 }
 
 /// Takes "May" or "may.": 5; nothing where no name of a month stands.
@@ -110,9 +129,10 @@ bool take_date_mark(std::string_view& text) {
 
 /// Takes a date; the rest is left.
 std::optional<double> take_date(std::string_view& text, DateOrder order) {
-  constexpr std::size_t compact = 8;  // 20240503
+  constexpr std::size_t compact = 8;              // 20240503
+  constexpr std::size_t compact_with_clock = 14;  // 20240503100000
   const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
-  if (digits == compact) {
+  if (digits == compact || digits == compact_with_clock) {
     const int year = take_digits(text, 4).value_or(0);
     const int month = take_digits(text, 2).value_or(0);
     return days_since_1970(year, month, take_digits(text, 2).value_or(0));

@@ -33,6 +33,7 @@ constexpr std::array units{
     Unit{"kmh", speed, 1000, 3600},
     Unit{"ftps", speed, 0.3048, 1},
     Unit{"fpm", speed, 0.3048, 60},
+    Unit{"cmps", speed, 1, 100},
     Unit{"mph", speed, 1609.344, 3600},  // the international mile an hour
     Unit{"mps2", acceleration},
     Unit{"g", acceleration, 9.80665, 1},
@@ -55,6 +56,8 @@ constexpr std::array units{
     Unit{"inh2o", pressure, 9.80665 * 25.4, 1},
     Unit{"ut", field},
     Unit{"nt", field, 1, 1000},
+    Unit{"t", field, 1'000'000, 1},
+    Unit{"mt", field, 1000, 1},
     Unit{"gauss", field, 100, 1},
     Unit{"mgauss", field, 1, 10},
     Unit{"k", temperature},
