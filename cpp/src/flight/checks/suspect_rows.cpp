@@ -270,6 +270,11 @@ Manner manner_of_channel(std::string_view header) {
   return manner;
 }
 
+void SuspectRows::freeze(const RowList& rows) {
+  for (RowList* const others : {&sentinels, &spikes, &bursts}) *others = without(*others, rows);
+  frozen = join(frozen, rows);
+}
+
 RowList SuspectRows::all() const { return join(join(sentinels, spikes), join(bursts, frozen)); }
 
 SuspectRows find_suspect_rows(std::span<const double> values, const std::vector<Segment>& stretches,

@@ -47,6 +47,9 @@ struct SuspectRows {
 
   /// All of them, ascending.
   RowList all() const;
+
+  /// Makes these rows frozen ones, and nothing else.
+  void freeze(const RowList& rows);
 };
 
 /// `values` as logged, which may hold NaN; `stretches`: rows one after another in time.

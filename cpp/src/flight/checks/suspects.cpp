@@ -69,10 +69,47 @@ std::vector<Segment> find_stretches_of(const Log& log) {
   return is_of_aircraft(log) ? probes::find_stretches(log.time(), {}) : log.stretches();
 }
 
+bool is_velocity(std::string_view quantity) {
+  return quantity == "vn" || quantity == "ve" || quantity == "vd";
+}
+
+/// Rows in which a receiver has no fix: all that it logs of the velocity is 0 there, and at once
+/// the vehicle moves, before or after.
+RowList find_without_fix(const Log& log, const std::vector<Segment>& stretches) {
+  constexpr std::size_t fewest = 4;  // in a row; fewer are single readings that jump
+  constexpr double moves = 5.0;      // m/s
+  std::vector<const LoggedColumn*> velocity;
+  for (const LoggedColumn& column : log.columns()) {
+    if (is_velocity(column.name())) velocity.push_back(&column);
+  }
+  RowList rows;
+  if (velocity.size() < 2) return rows;
+  const auto speed = [&](std::size_t row) {
+    double sum = 0.0;
+    for (const LoggedColumn* column : velocity) sum += column->values[row] * column->values[row];
+    return std::sqrt(sum);
+  };
+  for (const Segment& stretch : stretches) {
+    for (std::size_t first = stretch.first; first < stretch.last; ++first) {
+      if (speed(first) != 0.0) continue;
+      std::size_t last = first;
+      while (last < stretch.last && speed(last) == 0.0) ++last;
+      const bool moved = first > stretch.first && speed(first - 1) > moves;
+      const bool goes_on = last < stretch.last && speed(last) > moves;
+      if (last - first >= fewest && (moved || goes_on)) {
+        for (std::size_t row = first; row < last; ++row) rows.push_back(row);
+      }
+      first = last;
+    }
+  }
+  return rows;
+}
+
 /// The columns of the probe's quantities, in the log's order of quantities.
 std::vector<SuspectColumn> find_in_quantities(const Log& log,
                                               const std::vector<Segment>& stretches) {
   std::vector<SuspectColumn> columns;
+  const RowList without_fix = find_without_fix(log, stretches);
   std::map<std::string_view, RowList> jumps;  // of each sensor
   std::array<RowList, 3> axes;
   for (const LoggedColumn& column : log.columns()) {
@@ -80,6 +117,7 @@ std::vector<SuspectColumn> find_in_quantities(const Log& log,
     SuspectColumn suspect{column.header(), std::string(column.logged.unit->suffix),
                           role_of(log, column), manner,
                           find_suspect_rows(column.logged.column->values, stretches, manner)};
+    if (is_velocity(column.name()) && !without_fix.empty()) suspect.rows.freeze(without_fix);
     const RowList own = join(suspect.rows.spikes, suspect.rows.bursts);
     RowList& all = jumps[sensor_of(log, column)];
     all = join(all, own);

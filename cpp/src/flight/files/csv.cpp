@@ -126,7 +126,7 @@ bool CsvReader::take_row() {
   for (const files::ColumnForm& column : form_->columns) {
     cells_.push_back(whole ? cells[column.cell] : std::string_view());
     if (!column.is_of_day || !whole) continue;
-    const auto seconds = files::read_number(*form_, column, cells);
+    const auto seconds = files::read_number(column, cells);
     if (seconds) time_of_row_ = (*clock_)(*seconds);
   }
   return true;
@@ -154,7 +154,7 @@ std::span<const std::string_view> CsvReader::cells() const { return cells_; }
 std::optional<double> CsvReader::number(std::size_t column) const {
   if (!wrong_length_.empty()) return std::nullopt;
   if (form_->columns[column].is_of_day) return time_of_row_;
-  return files::read_number(*form_, form_->columns[column], row_->cells());
+  return files::read_number(form_->columns[column], row_->cells());
 }
 
 std::string_view CsvReader::text() {

@@ -139,7 +139,7 @@ void RowBlocks::take(std::span<const std::string_view> cells, RowPart& part) con
   for (std::size_t i = 0; i < form.columns.size(); ++i) {
     const ColumnForm& column = form.columns[i];
     const std::string_view cell = cells[column.cell];
-    put(i, is_plain_ ? parse_number(cell) : read_number(form, column, cells), cell, part);
+    put(i, is_plain_ ? parse_number(cell) : read_number(column, cells), cell, part);
   }
   ++part.rows;
 }

@@ -671,7 +671,7 @@ TableForm recognise_table(const std::string& file, std::string_view text, const 
   return Recogniser(file, text, asked).recognise();
 }
 
-std::optional<double> read_number(const TableForm& form, const ColumnForm& column,
+std::optional<double> read_number(const ColumnForm& column,
                                   std::span<const std::string_view> cells) {
   constexpr double day = 86400.0;
   std::string_view cell = cells[column.cell];

@@ -62,7 +62,7 @@ struct TableForm {
 TableForm recognise_table(const std::string& file, std::string_view text, const CsvForm& asked);
 
 /// Column `column` of a row, in the header's unit. Nothing where it is no finite number.
-std::optional<double> read_number(const TableForm& form, const ColumnForm& column,
+std::optional<double> read_number(const ColumnForm& column,
                                   std::span<const std::string_view> cells);
 
 /// Whether a row has as many cells as the table.

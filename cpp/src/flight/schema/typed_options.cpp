@@ -85,7 +85,15 @@ void read_typed(const Typed& typed, std::map<std::string, Normal>& values) {
 }
 
 void read_typed(const Typed& typed, std::map<std::string, std::string>& values) {
-  for (const std::string& text : typed.texts) {
+  std::vector<std::string> pairs;
+  for (const std::string& text : typed.texts) {  // a column's name may hold the comma of a list
+    if (pairs.empty() || text.find('=') != std::string::npos) {
+      pairs.push_back(text);
+    } else {
+      pairs.back() += ',' + text;
+    }
+  }
+  for (const std::string& text : pairs) {
     const auto [name, value] = parse_assignment(typed.flag, text, "HEADER=COLUMN");
     if (value.empty()) {
       throw Error(fmt::format("{} {}: write it as HEADER=COLUMN", typed.flag, text));
