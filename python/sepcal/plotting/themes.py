@@ -12,6 +12,7 @@ THEMES = ("light", "dark")
 DARK = {
     "#fff": "#15191d",  # the ground, and words on a bar
     "#1c2127": "#e6e9ec",  # ink
+    "#1d2228": "#15191d",  # words on a bar that is pale in either theme
     "#5c6670": "#a5aeb7",  # quiet
     "#e6e9ec": "#30363c",  # grid
     "#b9c1c8": "#565f68",  # axes

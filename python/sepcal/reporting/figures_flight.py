@@ -29,10 +29,18 @@ def draw_map(title: str, x: Array, y: Array, x_title: str, y_title: str, bins: i
     layout = words.layout(
         290,
         title,
-        xaxis=words.axis(x_title),
+        xaxis=words.axis(x_title, **_quarters(x_title)),
         yaxis=words.axis(y_title),
     )
     return Figure(data, layout, title)
+
+
+def _quarters(title: str) -> dict[str, Any]:
+    """Ticks of an axis of headings."""
+    if title != "heading [deg]":
+        return {}
+    quarters = list(range(0, 361, 90))
+    return {"tickvals": quarters, "ticktext": [f"{at}" for at in quarters], "range": [0, 360]}
 
 
 def draw_rose(title: str, degrees: Array) -> Figure:

@@ -36,6 +36,7 @@ class Figure:
     data: list[dict[str, Any]]
     layout: dict[str, Any]
     name: str  # what a screen reader says
+    least: int = 0  # [px] of its width: a narrower page scrolls it
 
 
 @dataclass(frozen=True)
@@ -158,13 +159,15 @@ def _build_block(block: str | Figure | Grid, pool: Pool) -> Html:
     if isinstance(block, Grid):
         cells = join("", (_build_block(figure, pool) for figure in block.figures))
         return html('<div class="grid" style="--width:{}px">{}</div>', block.width, cells)
-    return html(
+    drawn = html(
         '<div class="figure" role="img" aria-label="{}" data-figure="{}" '
-        'style="height:{}px"></div>',
+        'style="height:{}px;min-width:{}px"></div>',
         block.name,
         pool.keep(block),
         block.layout["height"],
+        block.least,
     )
+    return html('<div class="table">{}</div>', drawn) if block.least else drawn
 
 
 def read_asset(name: str) -> str:

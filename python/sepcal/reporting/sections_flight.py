@@ -34,7 +34,7 @@ def show_noise(material: Material) -> Section:
     )  # fmt: skip
     shortest, interval, longest = material.figures.interval
     figures = draw_noise(
-        outputs, material.units[0], residuals, runs, interval, material.floors, material.noise
+        outputs, material.units, residuals, runs, interval, material.floors, material.noise
     )
     lead = (
         "Noise alone keeps its autocorrelation inside the grey band, its spectrum flat on the "

@@ -266,7 +266,7 @@ def show_where(flown: Flown) -> Section:
         "RMSE by maneuver or stretch of time [s] and output, in the output's unit; the colour is "
         "how many times the fit's noise it is."
     )
-    strip = draw_heat_strip(comparison.where, outputs, floors)
+    strip = draw_heat_strip(comparison.where, outputs, floors, "noise of the fit")
     return Section("Where it fails", lead, [strip, tables.list_windows(comparison)])
 
 
