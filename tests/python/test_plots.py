@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import sepcal
-from sepcal.plotting.themes import DARK
+from sepcal.reporting.colours import DARK
 
 pytest.importorskip("plotly", reason="plots need plotly: pip install sepcal[report]")
 pytest.importorskip("matplotlib", reason="plots need matplotlib: pip install sepcal[plot]")

@@ -20,6 +20,7 @@ import numpy as np
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.markup import Html, as_html, html, join
+from sepcal.reporting.colours import DARK
 
 ROUNDING = 1e-4  # of an array's spread: float32 may change no value by more
 
@@ -90,7 +91,7 @@ class Pool:
 
     def to_json(self) -> str:
         """For a script element: no "<" can end it early, or open a comment in it."""
-        whole = {"arrays": list(self.arrays), "figures": self.figures}
+        whole = {"arrays": list(self.arrays), "figures": self.figures, "dark": DARK}
         return json.dumps(whole, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
@@ -124,6 +125,7 @@ def build_page(page: Page, plotly: str) -> str:
 <head>
 <meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{POLICY}">
+<meta name="color-scheme" content="light dark">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{as_html(page.title)}</title>
 <style>
