@@ -258,7 +258,7 @@ def texts_of(drawn: object) -> list[object]:
     return list(drawn.findobj(Text))  # type: ignore[attr-defined]
 
 
-@pytest.mark.parametrize("what", ["fit", "channels", "noise", "correlation"])
+@pytest.mark.parametrize("what", ["fit", "channels", "noise", "coverage", "correlation"])
 def test_long_names_are_neither_cut_off_nor_over_the_data(what: str) -> None:
     drawn = named_long().plot(what, backend="matplotlib")
     assert not any(LONG in at.get_text() for at in texts_of(drawn))  # type: ignore[attr-defined]
@@ -362,3 +362,16 @@ def test_no_correlation_is_minus_nothing() -> None:
 
     figure = draw_correlation(["a", "b"], np.array([[1.0, -0.001], [-0.001, 1.0]]))
     assert figure.data[0]["text"] == [["1.00", "0.00"], ["0.00", "1.00"]]
+
+
+def test_a_heat_strip_says_what_its_numbers_are() -> None:
+    base = sepcal.fit(sepcal.PitotStatic(), sepcal.simulate("pitot-static", rows=200))
+    assert base.compare().plot("where").layout.title.text == "RMSE by stretch of the flight [m/s]"
+    assert "each output in its own unit" in named_long().compare().plot("where").layout.title.text
+
+
+def test_a_compass_is_shown_whole() -> None:
+    base = sepcal.fit(sepcal.PitotStatic(), sepcal.simulate("pitot-static", rows=200))
+    drawn = base.plot("coverage").layout.xaxis
+    assert drawn.title.text == "heading [deg]"
+    assert drawn.tickvals == (0, 90, 180, 270, 360)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -101,7 +102,7 @@ def picture_comparison(comparison: Comparison, what: str) -> list[Figure]:
         known = comparison.noise
         per = "noise of the fit" if known else "RMSE overall"
         sizes = [known.get(misfit.output, misfit.rmse) for misfit in comparison.overall]
-        return [draw_heat_strip(comparison.where, outputs, sizes, per)]
+        return [draw_heat_strip(comparison.where, outputs, sizes, per, _title(comparison.where))]
     sizes = [misfit.rmse for misfit in comparison.overall]
     drawn = [
         draw_beside_zero(
@@ -113,13 +114,21 @@ def picture_comparison(comparison: Comparison, what: str) -> list[Figure]:
     return name_bands(drawn, "2 RMSE to either side")
 
 
+def _title(where: Sequence[_core.Misfit]) -> str:
+    """What the numbers of a heat strip are."""
+    units = {misfit.unit for misfit in where}
+    if len(units) > 1:
+        return "RMSE by stretch of the flight, each output in its own unit"
+    return words.titled("RMSE by stretch of the flight", *units)
+
+
 def picture_diagnosis(diagnosis: Diagnosis, what: str) -> list[Figure]:
     """Candidates, or where the model fails."""
     if what == "where":
         outputs = list(dict.fromkeys(misfit.output for misfit in diagnosis.where))
         told = diagnosis.residual
         floors = [told[output].floor or told[output].rmse for output in outputs]
-        return [draw_heat_strip(diagnosis.where, outputs, floors)]
+        return [draw_heat_strip(diagnosis.where, outputs, floors, title=_title(diagnosis.where))]
     shown = [at for at in diagnosis.effects if at.status != "cannot_be_seen"][:RANKED]
     if not shown:
         return []

@@ -124,7 +124,11 @@ def _bars(
 
 
 def draw_heat_strip(
-    where: Sequence[Misfit], outputs: list[str], floors: list[float], per: str = "noise floor"
+    where: Sequence[Misfit],
+    outputs: list[str],
+    floors: list[float],
+    per: str = "noise floor",
+    title: str = "",
 ) -> Figure:
     """RMSE by stretch (columns) and output (rows); the colour is its ratio to what `per` calls."""
     stretches = list(dict.fromkeys(misfit.segment for misfit in where))
@@ -157,6 +161,7 @@ def draw_heat_strip(
     }  # fmt: skip
     layout = words.layout(
         148 + 40 * len(outputs),
+        title,
         xaxis=words.axis(
             tickvals=list(range(len(ticks))), ticktext=ticks, tickangle=-35, showgrid=False,
         ),
