@@ -11,7 +11,7 @@ DARK = {
     "#e6e9ec": "#30363c",  # grid
     "#b9c1c8": "#565f68",  # axes
     "#8b949c": "#78828b",  # zero
-    "#9aa3ab": "#8c959e",  # measured
+    "#9aa3ab": "#6f7881",  # measured
     "#2463a8": "#5fa3e8",  # modelled, first output
     "#b83a26": "#f0775f",  # alarm
     "#d98a2b": "#e5a24e",  # held out

@@ -275,7 +275,8 @@ def list_parameters(
 
 def list_restated(restated: Mapping[str, Mapping[str, Any]]) -> Html:
     """Estimates in other words, a line each; empty where there are none."""
-    lines = [html("<b>{}</b>: {}", name, entry["sentence"]) for name, entry in restated.items()]
+    told = {name: entry["sentence"].replace("+-", "±") for name, entry in restated.items()}
+    lines = [html("<b>{}</b>: {}", name, sentence) for name, sentence in told.items()]
     return html("<h3>In other words</h3>{}", bullets(lines)) if lines else html("")
 
 
