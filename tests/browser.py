@@ -18,13 +18,16 @@ def find_browser() -> str:
     return found
 
 
-def show(page: Path, profile: Path) -> tuple[str, str, list[str]]:
-    """The document as it is in the end, its <html> element and what the console says."""
+def show(page: Path, profile: Path, *flags: str) -> tuple[str, str, list[str]]:
+    """The document as it is in the end, its <html> element and what the console says.
+
+    `flags` are more of Chromium's own.
+    """
     shown = subprocess.run(
         [find_browser(), "--headless=new", "--no-sandbox", "--disable-gpu",
          "--enable-logging=stderr", "--host-resolver-rules=MAP * ~NOTFOUND",
          f"--user-data-dir={profile}", "--virtual-time-budget=60000", "--window-size=1200,900",
-         "--dump-dom", page.as_uri()],
+         "--dump-dom", *flags, page.as_uri()],
         capture_output=True, text=True, check=False, timeout=240,
     )  # fmt: skip
     root = re.search(r"<html[^>]*>", shown.stdout)

@@ -347,9 +347,8 @@ class AircraftFit(Fit):
             ('u', 'v', 'w', 'phi', 'theta', 'psi')
         """
         chosen = self._or_fitted(flight, "smooth({...}, ")
-        return Smoothed(
-            self.core.smooth(chosen._core, dict(process_noise or {})), _seconds(chosen), self._units
-        )
+        core = self.core.smooth(chosen._core, dict(process_noise or {}))
+        return Smoothed(core, _seconds(chosen), self._units_on(chosen))
 
     def track(
         self,
@@ -405,7 +404,7 @@ class AircraftFit(Fit):
             forgetting,
             every,
         )
-        return Track(core, self._units)
+        return Track(core, self._units_on(chosen))
 
     def plot(
         self,
@@ -467,10 +466,11 @@ class AircraftFit(Fit):
 
         report(self, file, flight, **options)
 
-    @property
-    def _units(self) -> dict[str, str]:
-        """Of the parameters."""
-        return {name: parameter.unit for name, parameter in self.parameters.items()}
+    def _units_on(self, flight: Flight) -> dict[str, str]:
+        """Of the parameters, and of the outputs that the flight has."""
+        known = {name: parameter.unit for name, parameter in self.parameters.items()}
+        outputs = self.core.compare(flight._core).overall
+        return known | {misfit.output: misfit.unit for misfit in outputs}
 
     def _or_fitted(self, flight: AnyFlight | Sequence[AnyFlight] | None, call: str) -> Flight:
         """A flight, or several as one. Raises Error, which shows how to call again, for none."""

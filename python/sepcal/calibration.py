@@ -366,7 +366,9 @@ class Calibration(Fit):
             True
         """
         chosen = self._or_fitted(flight, "predict(")
-        return Prediction(self.core.predict(chosen._core, level), list(self.noise))
+        outputs = list(self.noise)
+        units = dict.fromkeys(outputs, self.core.unit) if self.core.unit else {}
+        return Prediction(self.core.predict(chosen._core, level), outputs, units, level)
 
     def plot(
         self,

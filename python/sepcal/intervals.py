@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, Unpack
 
 from sepcal import _core
@@ -101,6 +102,7 @@ class Prediction(_core.Prediction):
 
     Attributes:
         outputs: Their names; pickled they are lost.
+        units: Of outputs by name, as far as they are known; pickled they are lost.
 
     Example:
         >>> flight = sepcal.datasets.load("pitot")
@@ -111,10 +113,18 @@ class Prediction(_core.Prediction):
     """
 
     outputs: tuple[str, ...] = ()
+    units: Mapping[str, str] = MappingProxyType({})
+    _level: float | None = None
 
-    def __init__(self, core: _core.Prediction, outputs: Iterable[str] = ()) -> None:
+    def __init__(
+        self,
+        core: _core.Prediction,
+        outputs: Iterable[str] = (),
+        units: Mapping[str, str] | None = None,
+        level: float | None = None,
+    ) -> None:
         super().__init__(core)
-        self.outputs = tuple(outputs)
+        self.outputs, self.units, self._level = tuple(outputs), dict(units or {}), level
 
     @property
     def band(self) -> tuple[Array, Array]:
@@ -232,7 +242,7 @@ def predict(
     """
     laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=False)
     predicted = _core.predict(laid, columns, labels, core, own, fit, level)
-    return Prediction(predicted, list(fit.noise))
+    return Prediction(predicted, list(fit.noise), as_model(model).units, level)
 
 
 def as_fitted(

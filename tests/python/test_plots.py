@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import sepcal
-from sepcal.plotting.themes import DARK
+from sepcal.reporting.colours import DARK
 
 pytest.importorskip("plotly", reason="plots need plotly: pip install sepcal[report]")
 pytest.importorskip("matplotlib", reason="plots need matplotlib: pip install sepcal[plot]")
@@ -221,3 +221,157 @@ def test_names_can_not_break_a_figure() -> None:
         text.get_text() for text in drawn.findobj(lambda at: hasattr(at, "get_text"))
     ]
     assert drawn._repr_png_()
+
+
+LONG = "static_pressure_at_the_left_wing_tip_boom_pa"
+
+
+def named_long() -> sepcal.Calibration:
+    """A line whose input, output and slope have names of forty letters and more."""
+
+    class Boom:
+        inputs = {LONG: "Pa"}  # noqa: RUF012
+        outputs = {"airspeed_of_the_trailing_cone_behind_the_tail": "m/s", "b": "K"}  # noqa: RUF012
+        linear = {"sensitivity_of_the_left_static_port_to_sideslip": "m/s/Pa", "c": "K"}  # noqa: RUF012
+        nonlinear: dict[str, tuple[str, float, float]] = {}  # noqa: RUF012
+
+        def at(self, u, xi2):
+            x = np.asarray(getattr(u, LONG))
+            slopes = np.zeros((x.size, 2, 2))
+            slopes[:, 0, 0], slopes[:, 1, 1] = x, 1.0
+            return slopes, np.zeros((x.size, 2))
+
+    noise = np.random.default_rng(3).normal(size=(3, 200))
+    x = 100.0 + 30.0 * noise[0]
+    columns = {
+        "time_s": np.arange(200.0), LONG: x,
+        "airspeed_of_the_trailing_cone_behind_the_tail": 0.3 * x + noise[1], "b": 290.0 + noise[2],
+    }  # fmt: skip
+    return sepcal.fit(Boom(), sepcal.Flight(columns))  # type: ignore[return-value]
+
+
+def texts_of(drawn: object) -> list[object]:
+    """Matplotlib's words of a figure that was drawn."""
+    from matplotlib.text import Text
+
+    inked(drawn)
+    return list(drawn.findobj(Text))  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("what", ["fit", "channels", "noise", "coverage", "correlation"])
+def test_long_names_are_neither_cut_off_nor_over_the_data(what: str) -> None:
+    drawn = named_long().plot(what, backend="matplotlib")
+    assert not any(LONG in at.get_text() for at in texts_of(drawn))  # type: ignore[attr-defined]
+    width, height = drawn.get_size_inches()
+    for axes in drawn.axes:
+        assert axes.get_position().height * height > 0.1, "nothing is left of the picture"
+    box = drawn.get_tightbbox()  # [in], of all that is seen
+    assert min(box.x0, box.y0) > -0.01
+    assert box.x1 < width + 0.01
+    assert box.y1 < height + 0.01
+
+
+def test_axes_say_their_units() -> None:
+    """Residuals, predictions and innovations are in the units of their outputs."""
+
+    def titles(drawn: object) -> set[str]:
+        layout = drawn.layout.to_plotly_json()  # type: ignore[attr-defined]
+        return {at["title"]["text"] for name, at in layout.items() if name.startswith("yaxis")}
+
+    base = sepcal.fit(sepcal.PitotStatic(), sepcal.simulate("pitot-static", rows=200))
+    assert titles(base.plot()) == {"airspeed [m/s]", "residual<br>[m/s]"}
+    assert titles(base.predict().plot()) == {"airspeed [m/s]"}
+    assert titles(base.compare().plot("residuals")) == {"residual [m/s]"}
+    assert titles(base.plot("channels")) == {"residual [m/s]"}
+    path = sepcal.fit(sepcal.FlightPath(), sepcal.simulate("aircraft", rows=200))
+    assert titles(path.track(start_rows=100).plot("innovations")) == {
+        "innovation [m/s]", "innovation [rad]",
+    }  # fmt: skip
+    assert titles(path.smooth(PATH_NOISE).plot("innovations")) >= {"airspeed [m/s]", "alpha [rad]"}
+    spectrum = named_long().plot("noise").layout.yaxis2.title.text
+    assert "m/s" not in spectrum, "one output is in kelvin"
+
+
+def test_a_band_says_what_it_is() -> None:
+    base = sepcal.fit(sepcal.PitotStatic(), sepcal.simulate("pitot-static", rows=200))
+    for drawn, words in (
+        (base.predict(level=0.9).plot(), "holds 90 % of new measurements"),
+        (base.compare().plot("residuals"), "2 RMSE to either side"),
+        (pickle.loads(pickle.dumps(base.predict())).plot(), "holds new measurements"),
+    ):
+        assert [at.name for at in drawn.data if at.showlegend] == [words]
+        assert drawn.layout.showlegend
+
+
+def test_a_candidate_that_fails_badly_leaves_the_others_room() -> None:
+    """A gain of -900 % is written as such; its bar ends where the best one does."""
+    from sepcal.plotting.drawings import draw_ranking
+
+    gains = np.array([20.0, -900.0])
+    figure = draw_ranking(["good", "bad"], np.array([25.0, 15.0]), gains, [True, False])
+    low, high = figure.layout["xaxis"]["range"]
+    assert -40 < low < -25
+    assert 25 < high < 40
+    assert figure.data[1]["text"][1] == "−900 %"
+    assert "cut" in figure.layout["xaxis"]["title"]["text"]
+
+
+def test_numbers_left_of_zero_stand_left_of_their_bars() -> None:
+    from sepcal.plotting import as_figure
+    from sepcal.plotting.drawings import draw_ranking
+
+    figure = draw_ranking(
+        ["a", "b"], np.array([25.0, 15.0]), np.array([20.0, -10.0]), [True, False]
+    )
+    drawn = as_figure([figure], "matplotlib", "light")
+    number = next(at for at in texts_of(drawn) if at.get_text() == "−10 %")  # type: ignore[attr-defined]
+    end = drawn.axes[0].transData.transform((-10.0, 0.0))[0]
+    assert number.get_window_extent().x1 <= end  # type: ignore[attr-defined]
+
+
+def test_words_on_bars_can_be_read_in_both_themes() -> None:
+    """W3C's contrast of 4.5 between a bar's number and the bar."""
+    flight = sepcal.simulate("pitot-static", hide={"wind[altitude_m]": (0.05, 0.02)}, rows=400)
+    better = sepcal.fit(sepcal.PitotStatic(), flight).add("wind[altitude_m]")
+
+    def luminance(colour: str) -> float:
+        full = colour if len(colour) == 7 else "#" + "".join(2 * at for at in colour[1:])
+        parts = [int(full[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+        linear = [p / 12.92 if p <= 0.03928 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    for theme in ("light", "dark"):
+        bars = [at for at in better.plot("steps", theme=theme).data if at.type == "bar"]
+        assert len(bars) == 2
+        for bar in bars:
+            tones = sorted((luminance(bar.marker.color), luminance(bar.insidetextfont.color[0])))
+            assert (tones[1] + 0.05) / (tones[0] + 0.05) > 4.5, (theme, bar.name)
+
+
+def test_a_parameter_that_is_held_has_no_histogram() -> None:
+    trial = sepcal.SimulatedTrial(sepcal.PitotStatic(), simulation={"rows": 100})
+    study = sepcal.monte_carlo(trial, 5, progress=False)
+    assert "w_d" in study.names
+    text = study.plot("estimates").to_json()
+    assert "w_n" in text
+    assert "w_d" not in text
+
+
+def test_no_correlation_is_minus_nothing() -> None:
+    from sepcal.plotting.drawings import draw_correlation
+
+    figure = draw_correlation(["a", "b"], np.array([[1.0, -0.001], [-0.001, 1.0]]))
+    assert figure.data[0]["text"] == [["1.00", "0.00"], ["0.00", "1.00"]]
+
+
+def test_a_heat_strip_says_what_its_numbers_are() -> None:
+    base = sepcal.fit(sepcal.PitotStatic(), sepcal.simulate("pitot-static", rows=200))
+    assert base.compare().plot("where").layout.title.text == "RMSE by stretch of the flight [m/s]"
+    assert "each output in its own unit" in named_long().compare().plot("where").layout.title.text
+
+
+def test_a_compass_is_shown_whole() -> None:
+    base = sepcal.fit(sepcal.PitotStatic(), sepcal.simulate("pitot-static", rows=200))
+    drawn = base.plot("coverage").layout.xaxis
+    assert drawn.title.text == "heading [deg]"
+    assert drawn.tickvals == (0, 90, 180, 270, 360)

@@ -20,6 +20,7 @@ import sepcal
 from apps import small_files
 from browser import show
 from sepcal.reporting import words
+from sepcal.reporting.colours import DARK
 from sepcal.reporting.page import read_plotly
 
 pytest.importorskip("plotly", reason="the report draws with plotly: pip install sepcal[report]")
@@ -306,3 +307,52 @@ def test_a_browser_draws_every_figure(page: Written, tmp_path: Path) -> None:
     assert "data-problems" not in root
     assert f'data-drawn="{page.html.count("data-figure=")}"' in root
     assert complaints == []
+
+
+def as_rgb(colour: str) -> str:
+    """As a browser writes "#15191d" or "#fff": "rgb(21, 25, 29)"."""
+    digits = colour[1:] if len(colour) == 7 else "".join(2 * at for at in colour[1:])
+    return f"rgb({', '.join(str(int(digits[i : i + 2], 16)) for i in (0, 2, 4))})"
+
+
+def test_figures_are_dark_where_the_reader_has_it_so(tmp_path: Path) -> None:
+    base = sepcal.fit(sepcal.PitotStatic(), sepcal.simulate(sepcal.PitotStatic(), rows=300))
+    sepcal.report(base, tmp_path / "r.html")
+    for scheme, ground in (("0", DARK["#fff"]), ("1", "#fff")):
+        asked = f"--blink-settings=preferredColorScheme={scheme}"
+        document, root, complaints = show(tmp_path / "r.html", tmp_path / scheme, asked)
+        assert "data-problems" not in root
+        assert complaints == []
+        grounds = re.findall(r'class="main-svg"[^>]*background: ([^;]*);', document)
+        assert {at for at in grounds if at != "transparent"} == {as_rgb(ground)}
+
+
+def test_every_colour_of_a_page_has_a_dark_one(page: Written) -> None:
+    """One that the dark ones don't know would stay as it is on white."""
+    pool = next(text for text in page.read().scripts if text.lstrip().startswith('{"arrays"'))
+    figures = json.dumps(json.loads(pool)["figures"])
+    spelled = set(re.findall(r'"(#[0-9a-f]{3,6}|rgba\([^"]*\))"', figures))
+    assert "#fff" in spelled
+    assert spelled <= set(DARK), spelled - set(DARK)
+
+
+def test_a_narrow_page_scrolls_its_tables_and_not_itself(tmp_path: Path) -> None:
+    """With names of sixty letters, in a window of 500 px, which is Chromium's least."""
+    simulated = sepcal.simulate(sepcal.PitotStatic(), rows=300)
+    columns = {header: simulated[header] for header in simulated}
+    long = "temperature_of_the_avionics_bay_behind_the_seat_of_the_pilot"
+    columns[long] = np.random.default_rng(1).normal(size=simulated.rows)
+    flight = sepcal.Flight(columns, maneuver=["a_maneuver_with_a_long_name"] * simulated.rows)
+    sepcal.report(sepcal.fit(sepcal.PitotStatic(), flight), tmp_path / "r.html", flight)
+    html = (tmp_path / "r.html").read_text()
+    assert f"wind[{long}]" in html
+    script = (
+        "<script>setInterval(() => { const root = document.documentElement;"
+        "root.dataset.width = `${root.clientWidth},${root.scrollWidth}`; }, 100)</script>"
+    )
+    (tmp_path / "r.html").write_text(html.replace("</body>", f"{script}</body>"))
+    _, root, _ = show(tmp_path / "r.html", tmp_path / "profile", "--window-size=500,900")
+    told = re.search(r'data-width="(\d+),(\d+)"', root)
+    assert told is not None, root
+    assert int(told[1]) <= 500
+    assert told[1] == told[2]

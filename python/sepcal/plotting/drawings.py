@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from sepcal.columns import Array
-from sepcal.markup import in_figure
+from sepcal.markup import as_html, in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 from sepcal.reporting.thin import keep_extremes
@@ -19,6 +19,7 @@ from sepcal.reporting.thin import keep_extremes
 ROW = 30  # [px] of a row of a figure that has one a parameter
 BEYOND = 4.0  # half widths: an interval that goes on for ever is drawn so far
 RANKED = 12  # candidates
+CROWDED = 36  # estimates: the names of more don't fit below their cells
 BARS = "#5b94cc"
 
 
@@ -42,7 +43,7 @@ def draw_spans(
     Args:
         title: Of the figure.
         x_title: With the unit.
-        rows: What stands at the left.
+        rows: What stands at the left, text or Html.
         middle: The points.
         kinds: By the legend's word, a span a row.
     """
@@ -73,7 +74,7 @@ def draw_spans(
             range=[min(ends) - room, max(ends) + room],
         ),
         yaxis=words.axis(
-            tickvals=list(range(len(rows))), ticktext=[in_figure(row) for row in rows],
+            tickvals=list(range(len(rows))), ticktext=[as_html(row) for row in rows],
             range=[len(rows) - 0.5, -0.5], showgrid=False,
         ),
     )  # fmt: skip
@@ -83,31 +84,39 @@ def draw_spans(
 def draw_ranking(names: Sequence[str], drops: Array, gains: Array, found: Sequence[bool]) -> Figure:
     """Candidates, best on top: what each takes off the error, fitted and on rows held out [%]."""
     at = np.arange(len(names), dtype=float)
-    ticks = [in_figure(name + (" (found)" if is_found else "")) for name, is_found in
-             zip(names, found, strict=True)]  # fmt: skip
+    ticks = [in_figure(words.abbreviate(name, 40) + (" (found)" if is_found else ""))
+             for name, is_found in zip(names, found, strict=True)]  # fmt: skip
 
     def bars(name: str, values: Array, shift: float, colour: str) -> dict[str, Any]:
         return {
-            "type": "bar", "orientation": "h", "name": name, "y": at + shift, "x": values,
-            "width": 0.36, "marker": {"color": colour}, "hoverinfo": "x+name", "cliponaxis": False,
+            "type": "bar", "orientation": "h", "name": name, "y": at + shift,
+            "x": np.maximum(values, -deepest), "width": 0.36, "marker": {"color": colour},
             "text": ["" if math.isnan(v) else words.percent(v / 100) for v in values],
+            "hovertemplate": "%{text}", "cliponaxis": False,
             "textposition": "outside", "textfont": {"size": 11},
         }  # fmt: skip
 
+    finite = np.concatenate([drops, gains])
+    finite = finite[np.isfinite(finite)]
+    highest = float(finite.max(initial=1.0))
+    deepest = min(highest, -float(finite.min(initial=0.0)))  # a bar that goes further is cut
+    is_cut = bool((finite < -deepest).any())
     data = [
         bars("predicted drop of the error", drops, -0.19, words.MODELLED),
         bars("gain on rows held out", gains, 0.19, words.HELD_OUT),
     ]
-    finite = np.concatenate([drops, gains])
-    finite = finite[np.isfinite(finite)]
-    reach = [min(0.0, 1.25 * float(finite.min(initial=0.0))), 1.15 * float(finite.max(initial=1.0))]
+    room = 0.09 * (highest + deepest)  # for the numbers at the bars' ends
+    reach = [-deepest - room if deepest > 0 else 0.0, highest + room]
+    x_title = (
+        "of the error [%]; a bar that goes further left is cut" if is_cut else "of the error [%]"
+    )
     layout = words.layout(
         ROW * len(names) + 120,
         "Candidates, best first",
         barmode="overlay",
         showlegend=True,
         margin={"l": 56, "r": 14, "t": 58, "b": 46},
-        xaxis=words.axis("of the error [%]", range=reach, zeroline=True, zerolinecolor="#8b949c"),
+        xaxis=words.axis(x_title, range=reach, zeroline=True, zerolinecolor="#8b949c"),
         yaxis=words.axis(
             tickvals=list(range(len(names))), ticktext=ticks,
             range=[len(names) - 0.5, -0.5], showgrid=False, ticks="",
@@ -118,7 +127,10 @@ def draw_ranking(names: Sequence[str], drops: Array, gains: Array, found: Sequen
 
 def draw_correlation(names: Sequence[str], correlation: Array) -> Figure:
     """Of estimates, (n, n): blue together, red against one another."""
-    places, ticks = list(range(len(names))), [in_figure(name) for name in names]
+    places = list(range(len(names)))
+    ticks = [in_figure(words.abbreviate(name, 28)) for name in names]
+    longest = max(map(len, ticks), default=0)
+    shown = places if len(names) <= CROWDED else []  # of the names below the cells
     is_legible = len(names) <= 16
     trace = {
         "type": "heatmap", "z": correlation, "zmin": -1, "zmax": 1, "x": places, "y": places,
@@ -126,19 +138,26 @@ def draw_correlation(names: Sequence[str], correlation: Array) -> Figure:
                                              [1, words.MODELLED]],
         "colorbar": {"title": {"text": "correlation"}, "thickness": 10, "outlinewidth": 0,
                      "lenmode": "pixels", "len": 130, "y": 1, "yanchor": "top", "nticks": 5},
-        "hovertemplate": "%{z:.2f}<extra></extra>",
-        "text": [[f"{v:.2f}".replace("-", "−") if is_legible and np.isfinite(v) else ""
+        "hovertemplate": "%{y} and %{x}: %{z:.2f}<extra></extra>",
+        "text": [[_hundredths(v) if is_legible and np.isfinite(v) else ""
                   for v in row] for row in correlation],
         "texttemplate": "%{text}" if is_legible else "",
     }  # fmt: skip
-    ticked: dict[str, Any] = {"tickvals": places, "ticktext": ticks, "showgrid": False, "ticks": ""}
+    quiet: dict[str, Any] = {"showgrid": False, "ticks": ""}
     layout = words.layout(
-        28 * len(names) + 150,
+        28 * len(names) + 60 + (max(90, 5 * longest) if shown else 20),
         "Correlation of the estimates",
-        xaxis=words.axis(**ticked, tickangle=-45),
-        yaxis=words.axis(**ticked, autorange="reversed"),
+        xaxis=words.axis(
+            **quiet, tickvals=shown, ticktext=[ticks[i] for i in shown], tickangle=-45
+        ),
+        yaxis=words.axis(**quiet, tickvals=places, ticktext=ticks, autorange="reversed"),
     )
     return Figure([trace], layout, "Correlation of the estimates")
+
+
+def _hundredths(value: float) -> str:
+    text = f"{value:.2f}".replace("-", "−")
+    return "0.00" if text == "−0.00" else text
 
 
 def draw_estimates(title: str, x_title: str, values: Array, lines: Mapping[str, float]) -> Figure:
@@ -182,8 +201,23 @@ def _of_trials(title: str, x_title: str) -> dict[str, Any]:
         bargap=0.04,
         margin={"l": 50, "r": 10, "t": 58, "b": 42},
         xaxis=words.axis(x_title, nticks=6),
-        yaxis=words.axis("trials", rangemode="tozero", nticks=5),
+        yaxis=words.axis("trials", rangemode="tozero", nticks=5, tickformat="d"),
     )
+
+
+def name_bands(figures: Sequence[Figure], band: str) -> list[Figure]:
+    """The same figures, with what their bands are in a legend."""
+    named = []
+    for figure in figures:
+        data = [
+            {**trace, "name": band, "showlegend": True} if "fill" in trace
+            else {**trace, "showlegend": False}
+            for trace in figure.data
+        ]  # fmt: skip
+        margin = figure.layout["margin"] | {"t": 54}
+        own = {"showlegend": True, "margin": margin, "height": figure.layout["height"] + 24}
+        named.append(Figure(data, figure.layout | own, figure.name))
+    return named
 
 
 def shade_rows(first: float, last: float) -> dict[str, Any]:
@@ -205,10 +239,10 @@ def draw_column(
     }]  # fmt: skip
     layout = words.layout(
         200,
-        title,
+        words.abbreviate(title, 44),
         margin={"l": 56, "r": 8, "t": 30, "b": 38},
         shapes=shapes,
         xaxis=words.axis(x_title, range=[float(np.min(time)), float(np.max(time))], nticks=6),
-        yaxis=words.axis(y_title, nticks=5),
+        yaxis=words.axis(words.abbreviate(y_title, 20), nticks=5),
     )
     return Figure(data, layout, f"{title} over time")

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sepcal import _core
 from sepcal.comparison import Comparison
+from sepcal.markup import html
 from sepcal.plotting.drawings import (
     BEYOND,
     RANKED,
@@ -17,7 +19,9 @@ from sepcal.plotting.drawings import (
     draw_correlation,
     draw_ranking,
     draw_spans,
+    name_bands,
 )
+from sepcal.reporting import words
 from sepcal.reporting.figures_cause import draw_channels
 from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall, steps_of
 from sepcal.reporting.figures_fit import draw_fit
@@ -60,9 +64,9 @@ def picture_calibration(
         return draw_coverage(calibration, flight, figures)[0]
     outputs = [misfit.output for misfit in comparison.overall]
     sizes = [calibration.noise[output] for output in outputs]
-    unit = comparison.overall[0].unit
+    units = [misfit.unit for misfit in comparison.overall]
     return draw_noise(
-        outputs, unit, comparison.residuals, figures.runs, figures.interval[1], sizes,
+        outputs, units, comparison.residuals, figures.runs, figures.interval[1], sizes,
         np.array(sizes),
     )  # fmt: skip
 
@@ -98,15 +102,24 @@ def picture_comparison(comparison: Comparison, what: str) -> list[Figure]:
         known = comparison.noise
         per = "noise of the fit" if known else "RMSE overall"
         sizes = [known.get(misfit.output, misfit.rmse) for misfit in comparison.overall]
-        return [draw_heat_strip(comparison.where, outputs, sizes, per)]
+        return [draw_heat_strip(comparison.where, outputs, sizes, per, _title(comparison.where))]
     sizes = [misfit.rmse for misfit in comparison.overall]
-    return [
+    drawn = [
         draw_beside_zero(
             f"residual of {misfit.output}", misfit.unit, comparison.time,
             comparison.residuals[:, i], np.full(comparison.time.size, sizes[i]), [],
         )
         for i, misfit in enumerate(comparison.overall)
     ]  # fmt: skip
+    return name_bands(drawn, "2 RMSE to either side")
+
+
+def _title(where: Sequence[_core.Misfit]) -> str:
+    """What the numbers of a heat strip are."""
+    units = {misfit.unit for misfit in where}
+    if len(units) > 1:
+        return "RMSE by stretch of the flight, each output in its own unit"
+    return words.titled("RMSE by stretch of the flight", *units)
 
 
 def picture_diagnosis(diagnosis: Diagnosis, what: str) -> list[Figure]:
@@ -115,7 +128,7 @@ def picture_diagnosis(diagnosis: Diagnosis, what: str) -> list[Figure]:
         outputs = list(dict.fromkeys(misfit.output for misfit in diagnosis.where))
         told = diagnosis.residual
         floors = [told[output].floor or told[output].rmse for output in outputs]
-        return [draw_heat_strip(diagnosis.where, outputs, floors)]
+        return [draw_heat_strip(diagnosis.where, outputs, floors, title=_title(diagnosis.where))]
     shown = [at for at in diagnosis.effects if at.status != "cannot_be_seen"][:RANKED]
     if not shown:
         return []
@@ -153,9 +166,8 @@ def picture_intervals(intervals: Intervals) -> list[Figure]:
         if not half > 0:
             continue
         low, high = ((end - at.value) / half for end in at.profile)
-        unit = "" if at.unit == "1" else f" {at.unit}"
-        value = f"{at.value:.4g}".replace("-", "−")
-        rows.append(f"{at.name}: {value} ± {half:.2g}{unit}")
+        name = words.abbreviate(at.name, 34)
+        rows.append(html("{}: {}", name, words.estimate(at.value, half, at.unit)))
         gaussian.append(Span(-1.0, 1.0))
         profile.append(Span(max(low, -BEYOND), min(high, BEYOND)))
     if not rows:
@@ -171,9 +183,13 @@ def picture_prediction(prediction: Prediction) -> list[Figure]:
     time = prediction.time
     at = np.arange(len(prediction.value), dtype=float) if time is None else time
     x_title = "row" if time is None else "time [s]"
+    level = prediction._level
+    share = "" if level is None else f"{100 * level:g} % of "
+    band = f"holds {share}new measurements"
     drawn = []
     for i in range(prediction.value.shape[1]):
         name = prediction.outputs[i] if prediction.outputs else f"output {i + 1}"
         half = 0.5 * prediction.quantile * prediction.measurement_error[:, i]
-        drawn.append(draw_with_band(name, "1", at, prediction.value[:, i], half, [], x_title))
-    return drawn
+        unit = prediction.units.get(name, "1")
+        drawn.append(draw_with_band(name, unit, at, prediction.value[:, i], half, [], x_title))
+    return name_bands(drawn, band)

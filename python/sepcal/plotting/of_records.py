@@ -12,7 +12,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array
-from sepcal.plotting.drawings import draw_column, shade_rows
+from sepcal.plotting.drawings import draw_column, name_bands, shade_rows
 from sepcal.reporting.figures_fit import Run, runs_of, shade
 from sepcal.reporting.figures_states import draw_beside_zero, draw_with_band
 from sepcal.reporting.page import Figure
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from sepcal.smoothing import Smoothed
     from sepcal.tracking import Track
 
+DEVIATIONS = "2 standard deviations to either side"
 COLUMNS = 12  # of a flight, where none are named
 
 
@@ -84,14 +85,15 @@ def picture_track(track: Track, what: str) -> list[Figure]:
     at = track.time if has_time else track.rows.astype(float)
     x_title = "time [s]" if has_time else "row"
     if what == "innovations":
-        return [
+        drawn = [
             draw_beside_zero(
                 f"innovation of {name}", track.units.get(name, "1"), at, track.innovations[:, i],
                 np.full(at.size, float(np.nanstd(track.innovations[:, i]))), [], x_title,
             )
             for i, name in enumerate(track.outputs)
         ]  # fmt: skip
-    return [
+        return name_bands(drawn, "2 standard deviations of them all")
+    drawn = [
         draw_with_band(
             name,
             track.units.get(name, "1"),
@@ -104,6 +106,7 @@ def picture_track(track: Track, what: str) -> list[Figure]:
         for i, name in enumerate(track.names)
         if track.standard_deviations[:, i].any()
     ]
+    return name_bands(drawn, DEVIATIONS)
 
 
 def picture_smoothed(smoothed: Smoothed, what: str) -> list[Figure]:
@@ -118,14 +121,16 @@ def picture_smoothed(smoothed: Smoothed, what: str) -> list[Figure]:
     }
     rows = np.flatnonzero(np.isfinite(smoothed.x).any(axis=1))
     x_title = "row" if time is None else "time [s]"
-    return draw_record(smoothed, what, at[rows], rows, [], units, x_title)
+    drawn = draw_record(smoothed, what, at[rows], rows, [], units, x_title)
+    return name_bands(drawn, DEVIATIONS)
 
 
 def picture_pass(smoothed: SmoothedPass) -> list[Figure]:
     """The states of a filter's pass."""
     at = np.arange(len(smoothed.x), dtype=float)
     errors = np.sqrt(np.diagonal(smoothed.covariance, axis1=1, axis2=2))
-    return [
+    drawn = [
         draw_with_band(f"x[{i}]", "1", at, smoothed.x[:, i], errors[:, i], [], "sample")
         for i in range(smoothed.x.shape[1])
     ]
+    return name_bands(drawn, DEVIATIONS)

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sepcal import _core
+from sepcal.columns import Array
 from sepcal.plotting.drawings import Span, draw_estimates, draw_pulls, draw_spans
+from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ def picture_study(study: MonteCarlo, what: str | None) -> list[Figure]:
             name, name, column, {"truth": float(np.mean(truth)), "mean": float(np.nanmean(column))}
         )
         for name, column, truth in zip(study.names, study.estimates.T, study.truth.T, strict=True)
-        if np.isfinite(column).any()
+        if _differs(column)
     ]
 
 
@@ -44,8 +46,14 @@ def picture_trials(fits: TrialFits) -> list[Figure]:
     return [
         draw_estimates(name, name, column, {"mean": float(np.nanmean(column))})
         for name, column in zip(fits.names, fits.estimates.T, strict=True)
-        if np.isfinite(column).any()
+        if _differs(column)
     ]
+
+
+def _differs(estimates: Array) -> bool:
+    """Whether a parameter was estimated: one that is held has the same value in every trial."""
+    there = estimates[np.isfinite(estimates)]
+    return there.size == 1 or bool(np.ptp(there)) if there.size else False
 
 
 def picture_flights(fit: ManyFit, what: str) -> list[Figure]:
@@ -58,6 +66,7 @@ def picture_flights(fit: ManyFit, what: str) -> list[Figure]:
         return [
             _by_flight(
                 name,
+                words.abbreviate(name, 24),
                 flights[0].own[name].unit,
                 {at.name: (at.own[name].value, at.own[name].standard_error) for at in flights},
             )
@@ -67,6 +76,7 @@ def picture_flights(fit: ManyFit, what: str) -> list[Figure]:
     return [
         _by_flight(
             f"{name}, less that of the others",
+            "difference",
             fit.shared[name].unit,
             {
                 at.name: (at.departure.difference[name], at.departure.standard_error[name])
@@ -79,8 +89,8 @@ def picture_flights(fit: ManyFit, what: str) -> list[Figure]:
     ]
 
 
-def _by_flight(title: str, unit: str, found: dict[str, tuple[float, float]]) -> Figure:
+def _by_flight(title: str, what: str, unit: str, found: dict[str, tuple[float, float]]) -> Figure:
     spans = [Span(value - 2 * error, value + 2 * error) for value, error in found.values()]
-    x_title = title.partition(",")[0] + ("" if unit == "1" else f" [{unit}]")
+    x_title = words.titled(f"{what} with 2 standard errors", unit)
     middle = [value for value, _ in found.values()]
     return draw_spans(title, x_title, list(found), middle, {"2 standard errors": spans})

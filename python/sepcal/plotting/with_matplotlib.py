@@ -30,6 +30,7 @@ DASHES = {"dash": (0, (6, 4)), "dot": (0, (1.5, 2.5))}
 RAISED = str.maketrans("0123456789-−", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻")
 Colour: TypeAlias = tuple[float, float, float, float]
 
+STEPS = [1, 2, 5, 10]  # between ticks, as Plotly has them
 LIGHT = 0.55  # luminance of a ground on which dark words are read better
 
 
@@ -147,9 +148,11 @@ class _Drawing:
             if not words:
                 continue
             if lies:
+                is_left = length[i] < 0
                 axes.annotate(
-                    _plain(words), (length[i], across[i]), (4, 0), textcoords="offset points",
-                    ha="left", va="center", **self._font(trace.get("textfont", {})),
+                    _plain(words), (length[i], across[i]), (-4 if is_left else 4, 0),
+                    textcoords="offset points", ha="right" if is_left else "left", va="center",
+                    **self._font(trace.get("textfont", {})),
                 )  # fmt: skip
             else:
                 axes.text(
@@ -253,7 +256,11 @@ class _Drawing:
                 axis.set_major_locator(FixedLocator(look["tickvals"]))
                 axis.set_ticklabels([_plain(at) for at in look["ticktext"]])
             else:
-                axis.set_major_locator(MaxNLocator(look.get("nticks", 7)))
+                axis.set_major_locator(
+                    MaxNLocator(
+                        look.get("nticks", 7), steps=STEPS, integer=look.get("tickformat") == "d"
+                    )
+                )
                 axis.set_major_formatter(_Plain(useOffset=False))
             if ends is not None:
                 getattr(axes, f"set_{which}lim")(*ends)

@@ -12,6 +12,7 @@ from sepcal import _core
 from sepcal._core import ChannelMisfit
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
+from sepcal.markup import in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 from sepcal.reporting.thin import keep_even
@@ -38,10 +39,12 @@ def draw_channels(comparison: Comparison, read: Callable[[str], Array | None]) -
         residual = comparison.residuals[:, place]
         if x is None or (smooth := _core.smooth(x, residual)) is None:
             continue
-        title = f"{channel.driver}: {words.percent(channel.share_smooth)} of {channel.output}"
+        driver = words.abbreviate(channel.driver, 22)
+        output = words.abbreviate(channel.output, 14)
+        title = f"{driver}: {words.percent(channel.share_smooth)} of {output}"
         _, _, per = channel.unit.partition(" per ")
-        x_title = f"{channel.driver} [{per}]" if per else channel.driver
-        y_title = f"{channel.output} [{comparison.overall[place].unit}]"
+        x_title = words.titled(words.abbreviate(channel.driver, 24), per)
+        y_title = words.titled("residual", comparison.overall[place].unit)
         figures.append(draw_channel(title, x_title, y_title, x, residual, smooth))
     return figures
 
@@ -97,13 +100,15 @@ def draw_added_variable(
     """
     x, y = explained / noise, residual / noise
     data: list[dict[str, Any]] = []
-    for i, output in enumerate(outputs):
+    names = [words.abbreviate(output, 24) for output in outputs]
+    for i in range(len(outputs)):
         there = np.flatnonzero(np.isfinite(x[:, i]))
         kept = there[keep_even(there.size, 500)]
         kept = np.union1d(kept, there[np.argsort(-np.abs(x[there, i]))[:FARTHEST]])
         colour = words.BY_OUTPUT[i % len(words.BY_OUTPUT)]
         data.append({
-            "type": "scatter", "mode": "markers", "name": output, "x": x[kept, i], "y": y[kept, i],
+            "type": "scatter", "mode": "markers", "name": in_figure(names[i]), "x": x[kept, i],
+            "y": y[kept, i],
             "marker": {"size": 3, "color": colour, "opacity": 0.35}, "hoverinfo": "skip",
         })  # fmt: skip
     whole = np.isfinite(x)
@@ -115,11 +120,12 @@ def draw_added_variable(
         {"type": "scatter", "mode": "markers", "showlegend": False, "x": means[0], "y": means[1],
          "marker": {"size": 8, "color": "#fff", "line": {"width": 2, "color": words.INK}}},
     ]  # fmt: skip
+    rows = words.legend_rows(names)
     layout = words.layout(
-        320,
-        title,
+        302 + 18 * rows,
+        words.abbreviate(title, 34),
         showlegend=len(outputs) > 1,
-        margin={"l": 48, "r": 10, "t": 58, "b": 42},
+        margin={"l": 48, "r": 10, "t": 40 + 18 * rows, "b": 42},
         xaxis=words.axis("what it explains [sigma]"),
         yaxis=words.axis("residual [sigma]", zeroline=True, zerolinecolor="#8b949c"),
     )

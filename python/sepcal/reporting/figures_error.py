@@ -15,6 +15,7 @@ from sepcal.markup import html, in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 
+CELL, THIN, BESIDE = 40, 14, 200  # [px] of a cell with a number, one without, beside them all
 LEGIBLE = 26  # columns of a heat strip whose numbers can be read
 
 
@@ -45,8 +46,17 @@ def draw_waterfall(steps: list[Step], floor: float, unit: str) -> Figure:
     """A bar a step, fitted and held out, the promise as a tick, the noise floor as a line."""
     held = any(not math.isnan(step.held_out) for step in steps)
     data: list[dict[str, Any]] = [
-        _bars("fitted", steps, [step.fitted for step in steps], -0.19 * held, words.MODELLED),
-        _bars("held out", steps, [step.held_out for step in steps], 0.19, words.HELD_OUT),
+        _bars(
+            "fitted", steps, [step.fitted for step in steps], -0.19 * held, words.MODELLED, "#fff"
+        ),
+        _bars(
+            "held out",
+            steps,
+            [step.held_out for step in steps],
+            0.19,
+            words.HELD_OUT,
+            words.ON_HELD_OUT,
+        ),
     ]
     data[1]["visible"] = held
     shapes: list[dict[str, Any]] = []
@@ -73,13 +83,15 @@ def draw_waterfall(steps: list[Step], floor: float, unit: str) -> Figure:
             "xref": "paper", "x": 1, "y": floor, "xanchor": "right", "yanchor": "bottom",
             "text": f"noise floor {words.number(floor)} {in_figure(unit)}",
             "showarrow": False, "font": {"color": words.ALARM, "size": 12},
+            "bgcolor": "rgba(255,255,255,0.75)",
         })  # fmt: skip
     ticks = words.axis(
         tickvals=list(range(len(steps))),
-        ticktext=[in_figure(step.label) for step in steps],
+        ticktext=[in_figure(words.abbreviate(step.label, 36)) for step in steps],
         tickfont={"size": 13},
         showgrid=False,
-        range=[-0.6, max(len(steps), 2) - 0.05],  # room for the noise floor's words at the right
+        # Room for the noise floor's words at the right, where it is known.
+        range=[-0.6, max(len(steps), 2) - (0.4 if math.isnan(floor) else 0.05)],
     )
     layout = words.layout(
         330,
@@ -97,7 +109,7 @@ def draw_waterfall(steps: list[Step], floor: float, unit: str) -> Figure:
 
 
 def _bars(
-    name: str, steps: list[Step], values: list[float], shift: float, colour: str
+    name: str, steps: list[Step], values: list[float], shift: float, colour: str, ink: str
 ) -> dict[str, Any]:
     """One bar a step, pale where the step has not been taken."""
     return {
@@ -105,14 +117,18 @@ def _bars(
         "width": 0.34, "text": ["" if math.isnan(at) else words.number(at) for at in values],
         "textposition": "auto", "insidetextanchor": "middle", "textangle": 0, "cliponaxis": False,
         "hoverinfo": "y+name", "textfont": {"size": 13}, "insidetextfont": {
-            "color": [words.INK if step.is_next else "#fff" for step in steps], "size": 13,
+            "color": [words.INK if step.is_next else ink for step in steps], "size": 13,
         },
         "marker": {"color": colour, "opacity": [0.32 if step.is_next else 1 for step in steps]},
     }  # fmt: skip
 
 
 def draw_heat_strip(
-    where: Sequence[Misfit], outputs: list[str], floors: list[float], per: str = "noise floor"
+    where: Sequence[Misfit],
+    outputs: list[str],
+    floors: list[float],
+    per: str = "noise floor",
+    title: str = "",
 ) -> Figure:
     """RMSE by stretch (columns) and output (rows); the colour is its ratio to what `per` calls."""
     stretches = list(dict.fromkeys(misfit.segment for misfit in where))
@@ -124,7 +140,7 @@ def draw_heat_strip(
         ]
     )
     ratio = values / np.array(floors)[:, None]
-    ticks = [in_figure(shorten(at)) for at in stretches]
+    ticks = [in_figure(words.abbreviate(shorten(at), 24)) for at in stretches]
     legible = len(stretches) <= LEGIBLE
     trace: dict[str, Any] = {
         "type": "heatmap", "z": ratio, "zmin": 1, "zmax": max(2.0, float(np.nanmax(ratio))),
@@ -135,7 +151,7 @@ def draw_heat_strip(
              for j in range(len(ticks))]
             for i in range(len(outputs))
         ],
-        "hovertemplate": "%{customdata}<br>%{z:.2f} times the noise<extra></extra>",
+        "hovertemplate": html("%{{customdata}}<br>%{{z:.2f}} times the {}<extra></extra>", per),
         "colorbar": {
             "title": {"text": html("times the<br>{}", per)}, "thickness": 10, "outlinewidth": 0,
             "lenmode": "pixels", "len": 130, "y": 1, "yanchor": "top", "nticks": 4,
@@ -145,15 +161,18 @@ def draw_heat_strip(
     }  # fmt: skip
     layout = words.layout(
         148 + 40 * len(outputs),
+        title,
         xaxis=words.axis(
             tickvals=list(range(len(ticks))), ticktext=ticks, tickangle=-35, showgrid=False,
         ),
         yaxis=words.axis(
-            tickvals=list(range(len(outputs))), ticktext=[in_figure(o) for o in outputs],
+            tickvals=list(range(len(outputs))),
+            ticktext=[in_figure(words.abbreviate(output, 22)) for output in outputs],
             autorange="reversed", showgrid=False, ticks="",
         ),
     )  # fmt: skip
-    return Figure([trace], layout, "The error by stretch of the flight and output")
+    least = BESIDE + (CELL if legible else THIN) * len(stretches)
+    return Figure([trace], layout, "The error by stretch of the flight and output", least)
 
 
 def shorten(stretch: str) -> str:

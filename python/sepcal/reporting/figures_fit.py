@@ -12,7 +12,7 @@ import numpy as np
 from sepcal._core import FlightFigures
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
-from sepcal.markup import in_figure
+from sepcal.markup import html, in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 from sepcal.reporting.thin import Rows, keep_extremes
@@ -74,7 +74,8 @@ def draw_overlay(
     breaks[after_gaps] = is_long[after_gaps]
     breaks = np.cumsum(breaks)  # number of gaps up to each row
     data: list[dict[str, Any]] = []
-    shapes = shade(runs)
+    slot = 1 / len(channels)
+    shapes = shade(runs, 0.08 * slot)
     named = [run for run in runs if run[0] not in BACKGROUND]
     named = named if len(named) <= NAMED else []
     room = 88 if named else 30  # [px] above the first output, for names and the legend
@@ -87,17 +88,17 @@ def draw_overlay(
         legend={"orientation": "h", "x": 0, "xanchor": "left", "y": 0, "yref": "container",
                 "yanchor": "bottom", "traceorder": "normal"},
     )  # fmt: skip
-    slot = 1 / len(channels)
     for i, channel in enumerate(channels):
         top = 1 - i * slot
         main, strip = f"y{2 * i + 1}", f"y{2 * i + 2}"
         kept = keep_extremes(channel.residual)
         data += _trace(channel, time[kept], kept, breaks, main, strip, legend=i == 0)
         layout[main.replace("y", "yaxis")] = words.axis(
-            f"{channel.name} [{channel.unit}]", domain=[top - 0.60 * slot, top]
+            words.titled(words.abbreviate(channel.name, 16), channel.unit),
+            domain=[top - 0.60 * slot, top],
         )
         layout[strip.replace("y", "yaxis")] = words.axis(
-            "residual", domain=[top - 0.92 * slot, top - 0.65 * slot], nticks=4
+            _residual(channel.unit), domain=[top - 0.92 * slot, top - 0.65 * slot], nticks=4
         )
         for sign in (-2, 2):
             level = sign * channel.noise
@@ -138,14 +139,19 @@ def _trace(
     return [*around, below]
 
 
-def shade(runs: list[Run]) -> list[dict[str, Any]]:
-    """A pale stripe a maneuver, darker by turns where they adjoin."""
+def _residual(unit: str) -> str:
+    """An axis title of two lines: its strip is low."""
+    return html("residual<br>[{}]", unit) if unit not in ("1", "") else "residual"
+
+
+def shade(runs: list[Run], bottom: float = 0.0) -> list[dict[str, Any]]:
+    """A pale stripe a maneuver, darker by turns where they adjoin; `bottom` is of the height."""
     shapes = []
     for i, (_, first, last) in enumerate(run for run in runs if run[0] not in BACKGROUND):
         colour = "rgba(40,60,80,0.085)" if i % 2 == 0 else "rgba(40,60,80,0.045)"
         shapes.append({
-            "type": "rect", "xref": "x", "yref": "paper", "x0": first, "x1": last, "y0": 0, "y1": 1,
-            "fillcolor": colour, "line": {"width": 0}, "layer": "below",
+            "type": "rect", "xref": "x", "yref": "paper", "x0": first, "x1": last,
+            "y0": bottom, "y1": 1, "fillcolor": colour, "line": {"width": 0}, "layer": "below",
         })  # fmt: skip
     return shapes
 

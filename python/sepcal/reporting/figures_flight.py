@@ -12,14 +12,24 @@ from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 
 DENSITY = [[0, "#e4edf6"], [0.5, "#5b94cc"], [1, "#123f73"]]
+BINS = 48  # of a map, each way
+QUARTERS = [0, 90, 180, 270, 360]  # [deg]
+TURN: dict[str, Any] = {
+    "tickvals": QUARTERS, "ticktext": [f"{at}" for at in QUARTERS], "range": [0, 360],
+}  # fmt: skip
 CELLS = (6, 12)  # of a sphere, of equal area: rows of latitude, columns of longitude
 SIDES = [(0, 0, "nose"), (90, 0, "right"), (-90, 0, "left"), (0, -90, "belly"), (0, 90, "roof")]
 
 
-def draw_map(title: str, x: Array, y: Array, x_title: str, y_title: str, bins: int = 48) -> Figure:
-    """Where a flight was in two quantities: the logarithm of the rows in each cell."""
+def draw_map(
+    title: str, x: Array, y: Array, x_title: str, y_title: str, *, compass: bool = False
+) -> Figure:
+    """Where a flight was in two quantities: the logarithm of the rows in each cell.
+
+    By `compass` x is a direction of 0 to 360 deg, and the whole turn is shown.
+    """
     there = np.isfinite(x) & np.isfinite(y)
-    counts, x_edges, y_edges = np.histogram2d(x[there], y[there], bins)
+    counts, x_edges, y_edges = np.histogram2d(x[there], y[there], BINS)
     share = np.where(counts > 0, np.log10(np.maximum(counts, 1)), np.nan).T
     data = [{
         "type": "heatmap", "z": share, "x": 0.5 * (x_edges[1:] + x_edges[:-1]),
@@ -29,7 +39,7 @@ def draw_map(title: str, x: Array, y: Array, x_title: str, y_title: str, bins: i
     layout = words.layout(
         290,
         title,
-        xaxis=words.axis(x_title),
+        xaxis=words.axis(x_title, **(TURN if compass else {})),
         yaxis=words.axis(y_title),
     )
     return Figure(data, layout, title)

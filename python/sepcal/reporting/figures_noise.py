@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from sepcal import _core
 from sepcal.columns import Array
+from sepcal.markup import in_figure
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure
 
@@ -16,10 +18,21 @@ Rows: TypeAlias = tuple[str, int, int]  # label, first row, row after the last
 LEAST = 0.1  # a correlation: no axis is drawn finer
 
 
+def _legend(output: str) -> str:
+    return words.abbreviate(output, 24)
+
+
+def _layout(title: str, outputs: list[str], left: int, **axes: Any) -> dict[str, Any]:  # noqa: ANN401
+    """With room for the outputs' names below the title."""
+    rows = words.legend_rows([_legend(output) for output in outputs])
+    margin = {"l": left, "r": 10, "t": 44 + 18 * rows, "b": 42}
+    return words.layout(272 + 18 * rows, title, showlegend=True, margin=margin, **axes)
+
+
 def _lines(output: str, i: int, x: Array, y: Array) -> dict[str, Any]:
     colour = words.BY_OUTPUT[i % len(words.BY_OUTPUT)]
     return {
-        "type": "scatter", "mode": "lines", "name": output, "x": x, "y": y,
+        "type": "scatter", "mode": "lines", "name": in_figure(_legend(output)), "x": x, "y": y,
         "line": {"color": colour, "width": 1.4},
     }  # fmt: skip
 
@@ -36,14 +49,16 @@ def draw_autocorrelation(
             data.append(words.band(lags * interval, -limit, limit, grey, showlegend=False))
         widest = max(widest, float(np.nanmax(np.abs(values), initial=0.0)))
         data.append(_lines(output, i, lags * interval, values))
-    layout = words.layout(
-        290,
-        "Autocorrelation",
-        showlegend=True,
-        margin={"l": 50, "r": 10, "t": 62, "b": 42},
+    layout = _layout(
+        "Autocorrelation; grey: white noise",
+        outputs,
+        50,
         xaxis=words.axis("lag [s]", type="log", dtick=1),
         yaxis=words.axis(
-            "correlation", zeroline=True, zerolinecolor="#8b949c", range=[-widest, 1.05 * widest]
+            "correlation",
+            zeroline=True,
+            zerolinecolor="#8b949c",
+            range=[-1.05 * widest, 1.05 * widest],
         ),
     )
     return Figure(data, layout, "Autocorrelation of the residuals")
@@ -51,7 +66,7 @@ def draw_autocorrelation(
 
 def draw_spectrum(
     outputs: list[str],
-    unit: str,
+    units: Sequence[str],
     residuals: Array,
     runs: list[Rows],
     interval: float,
@@ -68,13 +83,13 @@ def draw_spectrum(
         floor = _lines(output, i, np.array([frequency[0], frequency[-1]]), np.full(2, white))
         floor["line"] = {**floor["line"], "dash": "dot", "width": 1}
         data.append({**floor, "showlegend": False, "hoverinfo": "skip"})
-    layout = words.layout(
-        290,
-        "Spectrum",
-        showlegend=True,
-        margin={"l": 62, "r": 10, "t": 62, "b": 42},
+    per = f"({units[0]})²/Hz" if len(set(units)) == 1 else "unit of each, squared, per Hz"
+    layout = _layout(
+        "Spectrum; dotted: white noise",
+        outputs,
+        62,
         xaxis=words.axis("frequency [Hz]", type="log", dtick=1),
-        yaxis=words.axis(f"density [({unit})²/Hz]", type="log", exponentformat="power"),
+        yaxis=words.axis(f"density [{per}]", type="log", exponentformat="power"),
     )
     return Figure(data, layout, "Spectrum of the residuals")
 
@@ -95,11 +110,10 @@ def draw_quantiles(outputs: list[str], residuals: Array, noise: Array) -> Figure
         "y": [-furthest, furthest], "line": {"color": words.INK, "width": 1, "dash": "dash"},
         "showlegend": False,
     })  # fmt: skip
-    layout = words.layout(
-        290,
-        "Q-Q",
-        showlegend=True,
-        margin={"l": 50, "r": 10, "t": 62, "b": 42},
+    layout = _layout(
+        "Quantiles; dashed: normal",
+        outputs,
+        50,
         xaxis=words.axis("normal quantile [sigma]"),
         yaxis=words.axis("residual [sigma]"),
     )
@@ -108,16 +122,16 @@ def draw_quantiles(outputs: list[str], residuals: Array, noise: Array) -> Figure
 
 def draw_noise(
     outputs: list[str],
-    unit: str,
+    units: Sequence[str],
     residuals: Array,
     runs: list[Rows],
     interval: float,
     floors: list[float],
     noise: Array,
 ) -> list[Figure]:
-    """All three: of residuals (N, n_z) in `unit`, `floors` and `noise` their n_z sizes."""
+    """All three: of residuals (N, n_z) in `units`, `floors` and `noise` their n_z sizes."""
     return [
         draw_autocorrelation(outputs, residuals, runs, interval),
-        draw_spectrum(outputs, unit, residuals, runs, interval, floors),
+        draw_spectrum(outputs, units, residuals, runs, interval, floors),
         draw_quantiles(outputs, residuals, noise),
     ]

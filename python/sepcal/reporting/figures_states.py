@@ -72,13 +72,13 @@ def _over_time(
     x_title: str,
     **axis: object,
 ) -> Figure:
-    y_title = f"{title} [{unit}]" if unit != "1" else title
+    y_title = words.abbreviate(title.partition(" of ")[0], 20)  # of "residual of mx" the first
     layout = words.layout(
         220,
-        title,
+        words.abbreviate(title, 40),
         margin={"l": 56, "r": 8, "t": 30, "b": 38},
         shapes=shade(runs),
         xaxis=words.axis(x_title, range=[float(np.min(time)), float(np.max(time))], nticks=6),
-        yaxis=words.axis(y_title, nticks=5, **axis),
+        yaxis=words.axis(words.titled(y_title, unit), nticks=5, **axis),
     )
     return Figure(data, layout, f"{title} over {x_title.partition(' ')[0]}")

@@ -20,6 +20,7 @@ import numpy as np
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.markup import Html, as_html, html, join
+from sepcal.reporting.colours import DARK
 
 ROUNDING = 1e-4  # of an array's spread: float32 may change no value by more
 
@@ -36,6 +37,7 @@ class Figure:
     data: list[dict[str, Any]]
     layout: dict[str, Any]
     name: str  # what a screen reader says
+    least: int = 0  # [px] of its width: a narrower page scrolls it
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,7 @@ class Pool:
 
     def to_json(self) -> str:
         """For a script element: no "<" can end it early, or open a comment in it."""
-        whole = {"arrays": list(self.arrays), "figures": self.figures}
+        whole = {"arrays": list(self.arrays), "figures": self.figures, "dark": DARK}
         return json.dumps(whole, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
@@ -123,6 +125,7 @@ def build_page(page: Page, plotly: str) -> str:
 <head>
 <meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{POLICY}">
+<meta name="color-scheme" content="light dark">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{as_html(page.title)}</title>
 <style>
@@ -158,13 +161,15 @@ def _build_block(block: str | Figure | Grid, pool: Pool) -> Html:
     if isinstance(block, Grid):
         cells = join("", (_build_block(figure, pool) for figure in block.figures))
         return html('<div class="grid" style="--width:{}px">{}</div>', block.width, cells)
-    return html(
+    drawn = html(
         '<div class="figure" role="img" aria-label="{}" data-figure="{}" '
-        'style="height:{}px"></div>',
+        'style="height:{}px;min-width:{}px"></div>',
         block.name,
         pool.keep(block),
         block.layout["height"],
+        block.least,
     )
+    return html('<div class="table">{}</div>', drawn) if block.least else drawn
 
 
 def read_asset(name: str) -> str:

@@ -114,7 +114,7 @@ def show_waterfall(material: Material) -> Section:
     blocks.append(tables.list_calibrations(material.chain, material.files, material.comparisons))
     lead = (
         "One step an added effect. A step is worth keeping when the error falls on rows held out "
-        "of the fit too; a black tick is what was promised before, a pale bar what is promised "
+        "of the fit too; a short line is what was promised before, a pale bar what is promised "
         "next. The noise floor is estimated from what is left: while an effect is missing, it may "
         "be too high."
     )
@@ -127,7 +127,7 @@ def show_overlay(material: Material) -> Section:
     overlay = draw_fit(comparison, material.figures, material.last.noise)
     blocks: list[str | Figure | Grid] = [overlay]
     lead = (
-        "Grey is what was measured, blue what the calibrated model says, pale blue its 2-sigma "
+        "Grey is what was measured, blue what the calibrated model says, the blue band its 2-sigma "
         "band. Below each, the residual, measured minus modelled, between its 2-sigma lines: "
         "what leaves them for long is not noise."
     )

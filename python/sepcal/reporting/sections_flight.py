@@ -34,7 +34,7 @@ def show_noise(material: Material) -> Section:
     )  # fmt: skip
     shortest, interval, longest = material.figures.interval
     figures = draw_noise(
-        outputs, material.units[0], residuals, runs, interval, material.floors, material.noise
+        outputs, material.units, residuals, runs, interval, material.floors, material.noise
     )
     lead = (
         "Noise alone keeps its autocorrelation inside the grey band, its spectrum flat on the "
@@ -146,8 +146,9 @@ def _cover_inputs(figures: FlightFigures, own: Model) -> list[Figure]:
     for name in own.inputs:
         values = figures.channel(name)
         if values is not None:
-            axis = f"{name} [{own.units[name]}]"
-            drawn.append(draw_histogram(f"Input {name}", values, axis))
+            short = words.abbreviate(name, 24)
+            axis = words.titled(short, own.units[name])
+            drawn.append(draw_histogram(f"Input {short}", values, axis))
     return drawn
 
 
@@ -160,8 +161,8 @@ def _cover_air(figures: FlightFigures) -> list[Figure]:
         drawn.append(draw_map("Flow angles as read", b, a, "beta [deg]", "alpha [deg]"))
     elif speed is not None and found is not None:
         degrees, name = found
-        title = f"Airspeed over {name}"
-        drawn.append(draw_map(title, degrees, speed, f"{name} [deg]", "airspeed [m/s]"))
+        title, x_title = f"Airspeed by {name}", f"{name} [deg]"
+        drawn.append(draw_map(title, degrees, speed, x_title, "airspeed [m/s]", compass=True))
     drawn += _heading_figures(figures)
     if speed is not None:
         drawn.append(draw_histogram("Airspeed as read", speed, "airspeed [m/s]"))

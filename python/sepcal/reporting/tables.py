@@ -69,7 +69,7 @@ def list_history(history: Sequence[HistoryEntry], unit: str) -> Html:
     for entry in history:
         achieved = drop(entry.rmse_before, entry.rmse_after)
         rows.append([
-            html("<code>{}</code>", entry.effect),
+            html('<code class="name">{}</code>', entry.effect),
             html("{} → {}", number(entry.rmse_before), with_unit(entry.rmse_after, unit)),
             percent(entry.predicted_drop),
             percent(achieved),
@@ -95,7 +95,9 @@ def list_calibrations(
     outputs = [misfit.output for misfit in comparisons[-1].overall]
     rows = []
     for i, calibration in enumerate(chain):
-        effects = join(", ", (html("<code>{}</code>", at.name) for at in calibration.effects))
+        effects = join(
+            ", ", (html('<code class="name">{}</code>', at.name) for at in calibration.effects)
+        )
         rows.append([
             files[i] if i < len(files) else f"{i + 1}",
             effects or "none",
@@ -140,9 +142,10 @@ def list_candidates(effects: Sequence[EffectFinding]) -> Html:
 
 
 def _rank(effects: Sequence[EffectFinding], first: int) -> Html:
+    has_beside = any(effect.beside_in_words for effect in effects)
     rows = []
     for i, effect in enumerate(effects, first):
-        name = html("<b>{}</b><br><small>{}</small>", effect.name, effect.sentence)
+        name = html('<b class="effect">{}</b><small>{}</small>', effect.name, effect.sentence)
         if not all(at in effect.name or at in effect.sentence for at in effect.drivers):
             name = html("{}<br><small>driven by {}</small>", name, ", ".join(effect.drivers))
         kind = "found" if effect.status == "found" else "pill"
@@ -153,6 +156,7 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> Html:
         rows.append([
             f"{i}",
             name,
+            html('<span class="{}">{}</span>', kind, effect.in_words),
             _coefficients(effect),
             probability(effect.p_adjusted),
             percent(effect.predicted_drop),
@@ -161,16 +165,17 @@ def _rank(effects: Sequence[EffectFinding], first: int) -> Html:
             number(effect.partial_f, 3),
             percent(drop(effect.pse_without, effect.pse)),
             percent(math.nan if effect.sse == 0 else effect.sse_reduction / effect.sse),
-            effect.beside_in_words,
-            html('<span class="{}">{}</span>', kind, effect.in_words),
+            *([effect.beside_in_words] if has_beside else []),
         ])  # fmt: skip
     head: list[tuple[str, bool]] = [
-        ("", True), ("candidate", False), ("estimate ± standard error", False),
+        ("", True), ("candidate", False), ("status", False), ("estimate ± standard error", False),
         (html("p,<br>adjusted"), True), (html("predicted<br>drop"), True),
         (html("held-out<br>gain"), True), (html("visi-<br>bility"), True),
         (html("partial<br>F"), True), (html("PSE<br>falls by"), True),
-        (html("SSE<br>falls by"), True), (html("beside<br>the first"), False), ("status", False),
+        (html("SSE<br>falls by"), True),
     ]  # fmt: skip
+    if has_beside:
+        head.append((html("beside<br>the first"), False))
     return table(head, rows)
 
 
@@ -208,7 +213,7 @@ def list_absorbed(effect: EffectFinding, calibration: Calibration, most: int = 5
     rows = [
         [
             html("<b>{}</b>", parameter.name),
-            html("<small>{}</small>", meaning(parameter, calibration)),
+            html('<small class="meaning">{}</small>', meaning(parameter, calibration)),
             with_unit(shift, parameter.unit, 2),
             number(ratio, 2),
         ]
@@ -243,7 +248,7 @@ def list_parameters(
         told = html("{} {}", partner, number(r, 3 if abs(r) > 0.95 else 2)) if partner else "–"
         rows.append([
             html("<b>{}</b>", parameter.name),
-            html("<small>{}</small>", meaning(parameter, calibration)),
+            html('<small class="meaning">{}</small>', meaning(parameter, calibration)),
             with_unit(parameter.value, parameter.unit, 6),
             number(parameter.standard_error, 2),
             number(parameter.standard_error_white, 2),
@@ -255,7 +260,10 @@ def list_parameters(
     for follows in (derived or {}).values():
         rows.append([
             html("<b>{}</b>", follows.name),
-            html("<small>follows from the others: {}</small>", MEANINGS.get(follows.name, "")),
+            html(
+                '<small class="meaning">follows from the others: {}</small>',
+                MEANINGS.get(follows.name, ""),
+            ),
             with_unit(follows.value, follows.unit, 6),
             number(follows.standard_error, 2),
             number(follows.standard_error_white, 2),
@@ -267,7 +275,8 @@ def list_parameters(
 
 def list_restated(restated: Mapping[str, Mapping[str, Any]]) -> Html:
     """Estimates in other words, a line each; empty where there are none."""
-    lines = [html("<b>{}</b>: {}", name, entry["sentence"]) for name, entry in restated.items()]
+    told = {name: entry["sentence"].replace("+-", "±") for name, entry in restated.items()}
+    lines = [html("<b>{}</b>: {}", name, sentence) for name, sentence in told.items()]
     return html("<h3>In other words</h3>{}", bullets(lines)) if lines else html("")
 
 

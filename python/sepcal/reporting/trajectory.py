@@ -232,7 +232,7 @@ def show_overlay(flown: Flown) -> Section:
     by_filter = comparison.method == "filter-error"
     says = "the filter foretold from the rows before" if by_filter else "the integrated model says"
     lead = (
-        f"Grey is what was measured, blue what {says}, pale blue its 2-sigma "
+        f"Grey is what was measured, blue what {says}, the blue band its 2-sigma "
         f"band. Below each, the {'innovation' if by_filter else 'residual'} between its 2-sigma "
         "lines: what leaves them for long is not noise."
     )
@@ -266,7 +266,7 @@ def show_where(flown: Flown) -> Section:
         "RMSE by maneuver or stretch of time [s] and output, in the output's unit; the colour is "
         "how many times the fit's noise it is."
     )
-    strip = draw_heat_strip(comparison.where, outputs, floors)
+    strip = draw_heat_strip(comparison.where, outputs, floors, "noise of the fit")
     return Section("Where it fails", lead, [strip, tables.list_windows(comparison)])
 
 

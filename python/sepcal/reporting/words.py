@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,9 @@ INK, QUIET, RULE = "#1c2127", "#5c6670", "#e6e9ec"
 MEASURED, MODELLED, ALARM = "#9aa3ab", "#2463a8", "#b83a26"
 BAND = "rgba(36,99,168,0.16)"
 HELD_OUT, PROMISED = "#d98a2b", "#1c2127"
+ON_HELD_OUT = "#1d2228"  # words on its bars: dark in either theme
 BY_OUTPUT = ["#2463a8", "#c4622d", "#2c7a4b", "#7b4fa3", "#8a6d1d", "#4a5560"]
+LEGEND_WIDTH, LEGEND_KEY, LETTER = 240, 42, 6.6  # [px] of a small picture, an entry, a letter
 FONT = '"Inter","Segoe UI","Helvetica Neue",Helvetica,Arial,"DejaVu Sans",sans-serif'
 
 MEANINGS = {
@@ -56,6 +59,25 @@ def number(value: float | None, digits: int = 3) -> Html:
         else:
             return power_of_ten(mantissa.removesuffix("."), int(exponent))
     return as_html(text.replace("-", "−"))
+
+
+def abbreviate(name: str, most: int) -> str:
+    """The name, its middle left out where it has more than `most` letters."""
+    if len(name) <= most:
+        return name
+    tail = (most - 1) // 2
+    return f"{name[: most - 1 - tail]}…{name[len(name) - tail :]}"
+
+
+def titled(name: str, unit: str) -> str:
+    """`airspeed [m/s]`; without brackets where there is no unit."""
+    return f"{name} [{unit}]" if unit not in ("1", "") else name
+
+
+def legend_rows(names: Sequence[str]) -> int:
+    """How many rows the legend of a small picture takes: its entries are equally wide."""
+    entry = LEGEND_KEY + LETTER * max(map(len, names), default=0)
+    return -(-len(names) // max(1, int(LEGEND_WIDTH / entry)))
 
 
 def power_of_ten(mantissa: str, exponent: int) -> Html:
@@ -136,9 +158,9 @@ def band(x: Array, low: Array, high: Array, colour: str, **more: object) -> dict
 
 
 def axis(title: str = "", **more: object) -> dict[str, Any]:
-    """A quiet axis; the title is text."""
+    """A quiet axis; the title is text, or Html."""
     return {
-        "title": {"text": in_figure(title), "standoff": 6},
+        "title": {"text": as_html(title), "standoff": 6, "font": {"size": 12}},
         "gridcolor": RULE,
         "zeroline": False,
         "linecolor": "#b9c1c8",
