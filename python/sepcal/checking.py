@@ -41,11 +41,23 @@ class FlightCheck(Page, _core.FlightCheck):
         return self.text
 
     def to_json(self) -> str:
-        """The JSON that the app's check prints."""
+        """The JSON that the app's check prints.
+
+        Example:
+            >>> check = sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+            >>> check.to_json().startswith("{")
+            True
+        """
         return self.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> check = sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+            >>> check.to_dict()["model"]
+            'pitot-static'
+        """
         read: dict[str, Any] = json.loads(self.json)
         return read
 
@@ -62,6 +74,10 @@ class FlightCheck(Page, _core.FlightCheck):
         Raises:
             Error: Another word for one of these; a check that was pickled; the library is not
                 installed.
+
+        Example:
+            >>> check = sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+            >>> drawn = check.plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_records import picture_check

@@ -31,11 +31,25 @@ class Exported(_core.Exported):
         return self.page
 
     def to_json(self) -> str:
-        """The JSON that the app's export prints."""
+        """The JSON that the app's export prints.
+
+        Example:
+            >>> flight = sepcal.datasets.load("magnetometer")
+            >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+            >>> sepcal.export(base, folder / "compass.h", to="c").to_json().startswith("{")
+            True
+        """
         return self.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> flight = sepcal.datasets.load("magnetometer")
+            >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+            >>> sepcal.export(base, folder / "compass.param", to="ardupilot").to_dict()["to"]
+            'ardupilot'
+        """
         read: dict[str, Any] = json.loads(self.json)
         return read
 

@@ -188,7 +188,12 @@ class Flight(Mapping[str, Array]):
         return in_line(f"<{type(self).__name__} {self.name!r}: {self.rows} rows of {headers}>")
 
     def head(self, rows: int = ROWS_SHOWN) -> "Flight":
-        """The first rows, as a flight of the same name. Raises Error for fewer than one."""
+        """The first rows, as a flight of the same name. Raises Error for fewer than one.
+
+        Example:
+            >>> sepcal.Flight({"time_s": [0.0, 0.1, 0.2]}).head(2)["time_s"].tolist()
+            [0.0, 0.1]
+        """
         if rows < 1:
             raise _core.Error(f"head({rows}): give one row or more")
         first = Flight(
@@ -205,6 +210,11 @@ class Flight(Mapping[str, Array]):
 
         Raises:
             Error: pandas is not installed.
+
+        Example:
+            >>> flight = sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [150.0, 151.0]}, ["a", "b"])
+            >>> list(flight.to_frame())
+            ['time_s', 'maneuver', 'dp_pa']
         """
         frame = load("pandas", self.name, "to_frame()").DataFrame(dict(self))
         if self.maneuvers:
@@ -216,6 +226,12 @@ class Flight(Mapping[str, Array]):
 
         Raises:
             Error: The file can't be written.
+
+        Example:
+            >>> flight = sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [150.0, 151.0]})
+            >>> flight.to_csv(folder / "log.csv")
+            >>> (folder / "log.csv").read_text().splitlines()
+            ['time_s,dp_pa', '0.0,150.0', '0.1,151.0']
         """
         write_whole({name_of(file): csv_of(self)})
 

@@ -31,6 +31,11 @@ class LoggedFlight(Flight):
         conversion: What was done: the log, the sensor, UTC, the Earth's field, rows that were left
             out, and of each column its source and what was done to it. It is what stands beside
             the CSV file as JSON.
+
+    Example:
+        >>> flight = sepcal.read_log(folder / "flight.ulg")
+        >>> flight.sensor, flight.conversion["rows"] == flight.rows
+        ('mag0', True)
     """
 
     def __init__(self, file: str, sensor: Sensor, table: Table, conversion: dict[str, Any]) -> None:
@@ -42,6 +47,12 @@ class LoggedFlight(Flight):
         """Writes FILE, a CSV that read_csv() and the apps read, and FILE.json, the conversion.
 
         Both appear whole or none does. Raises Error where they can't be written.
+
+        Example:
+            >>> flight = sepcal.read_log(folder / "flight.ulg")
+            >>> flight.save(folder / "mag0.csv")
+            >>> sorted(path.name for path in folder.glob("mag0.csv*"))
+            ['mag0.csv', 'mag0.csv.json']
         """
         target = name_of(file)
         write_whole({target: csv_of(self), sidecar_of(target): to_json(self.conversion)})
@@ -88,6 +99,11 @@ def read_log(
         Error: No such file or another format, a log cut off, an unknown sensor or one that lacks
             what its calibration needs, no reading from `start` to `end`, positions without a date,
             a day outside the field's models, no pyulog, pymavlink or pygeomag.
+
+    Example:
+        >>> flight = sepcal.read_log(folder / "flight.ulg", "mag0", end=30.0)
+        >>> flight.columns[:4]
+        ('time_s', 'mx_ut', 'my_ut', 'mz_ut')
     """
     return convert(open_log(name_of(file), cut_off, progress), sensor, start, end, date, field)
 

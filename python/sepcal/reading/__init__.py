@@ -25,6 +25,11 @@ def read_file(
 
     Raises:
         Error: No such file, no table, one that is damaged or too large, a missing library.
+
+    Example:
+        >>> sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [1.0, 2.0]}).to_csv(folder / "log.csv")
+        >>> sepcal.reading.read_file(str(folder / "log.csv")).rows
+        2
     """
     from sepcal.reading.files import read
 
