@@ -15,7 +15,7 @@ from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.fit_options import FitOptions
-from sepcal.flight import AnyFlight, Flight, to_flight
+from sepcal.flight import AnyFlight, Flight, to_flight, to_flight_of
 from sepcal.geometry import Aircraft
 from sepcal.intervals import Intervals
 from sepcal.options import spelled_out, to_core, to_names
@@ -520,13 +520,13 @@ class AircraftFit(Fit):
         """A flight, or several as one. Raises Error, which shows how to call again, for none."""
         flight = flight if flight is not None else self.flight
         if isinstance(flight, Sequence) and not isinstance(flight, str):
-            given = [to_flight(one, call)._core for one in flight]
+            given = [to_flight_of(self.core, one, call)._core for one in flight]
             return Flight._of(states_module().join(given, _core.Options(), self.core))
         if flight is None:
             raise _core.Error(
                 f"a loaded fit has no flight; give one: {call}sepcal.read({self.core.file!r}))"
             )
-        return to_flight(flight, call)
+        return to_flight_of(self.core, flight, call)
 
     def save(self, file: Path) -> None:
         """Writes to_json() to a file that appears whole or not at all.
@@ -676,7 +676,7 @@ def fit_flights(
     model: AircraftModel, flights: Sequence[AnyFlight], options: FitOptions
 ) -> AircraftFit:
     """Of several flights together, each with initial states of its own; fit_jointly() calls it."""
-    given = [to_flight(one, "fit_jointly(model, [")._core for one in flights]
+    given = [to_flight(one, "fit_jointly(model, [", "", options)._core for one in flights]
     laid = _core_options(model, options)
     joined = Flight._of(states_module().join(given, to_core(options), None))
     return AircraftFit(states_module().fit(joined._core, laid), joined)
@@ -718,7 +718,7 @@ def two_step(
         >>> abs(steps.aero["CZ_alpha"].value / flight.truth["CZ_alpha"] - 1) < 0.1
         True
     """
-    chosen = to_flight(flight, "two_step(")
+    chosen = to_flight(flight, "two_step(", "", options)
     aero = Aero(aircraft, equations=equations, window=window)
     first = (path or FlightPath())._aircraft_options()
     laid = {**aero._aircraft_options(), "trajectory": first["trajectory"]}

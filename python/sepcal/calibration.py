@@ -17,7 +17,7 @@ from sepcal.certificates import Certificate
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
-from sepcal.flight import AnyFlight, Flight, to_flight
+from sepcal.flight import AnyFlight, Flight, to_flight_of
 from sepcal.intervals import Intervals, Prediction
 from sepcal.models import Model
 from sepcal.options import to_names
@@ -505,7 +505,7 @@ class Calibration(Fit):
         return self._to_flight(flight, call)
 
     def _to_flight(self, flight: object, call: str) -> Flight:
-        return to_flight(flight, call, self.core.model)
+        return to_flight_of(self.core, flight, call)
 
     def apply(self, flight: AnyFlight) -> dict[str, Array]:
         """The corrected readings of a flight by header, each of shape (rows,).

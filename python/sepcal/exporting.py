@@ -10,7 +10,7 @@ from typing import Any, Literal
 from sepcal import _core
 from sepcal.arguments import checked
 from sepcal.calibration import Calibration, Path
-from sepcal.flight import AnyFlight, to_flight
+from sepcal.flight import AnyFlight, to_flight_of
 from sepcal.whole_files import name_of
 
 Target = Literal["c", "cpp", "px4", "ardupilot"]
@@ -112,7 +112,7 @@ def export(
     """
     chosen = calibration.flight
     if flight is not None:
-        chosen = to_flight(flight, "export(..., flight=", calibration.core.model)
+        chosen = to_flight_of(calibration.core, flight, "export(..., flight=")
     turned = None if mounting is None else [float(angle) for angle in mounting]
     if turned is not None and len(turned) != 3:
         raise _core.Error("mounting is not three angles; give roll, pitch, yaw in degrees")

@@ -15,7 +15,7 @@ from sepcal.aircraft_fits import AircraftFit
 from sepcal.arguments import checked
 from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
-from sepcal.flight import AnyFlight, to_flight
+from sepcal.flight import AnyFlight, to_flight_of
 from sepcal.reporting.gather import gather
 from sepcal.reporting.page import build_page, read_plotly
 from sepcal.reporting.sections import compose
@@ -77,7 +77,7 @@ def report(
         raise _core.Error("process_noise is for models with a state: a flight path, an aircraft")
     plotly = read_plotly()
     if flight is not None:
-        flight = to_flight(flight, "report(..., flight=", getattr(chain[-1].core, "model", ""))
+        flight = to_flight_of(chain[-1].core, flight, "report(..., flight=")
     told, target = progress or (lambda _: None), name_of(file)
     names = [name_of(at) for at in files]
     if kinds == {AircraftFit}:
