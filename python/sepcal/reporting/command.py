@@ -9,7 +9,7 @@ from sepcal._core import Error
 from sepcal.calibration import Calibration, load
 from sepcal.flight import to_flight, to_flight_of
 from sepcal.own_commands import add_model, read_model, read_numbers
-from sepcal.printing import in_line, show, told_progress
+from sepcal.printing import in_line, show
 from sepcal.reporting import report
 from sepcal.whole_files import refuse_outputs
 
@@ -84,16 +84,12 @@ def run(arguments: argparse.Namespace) -> int:
     flight = flights[0]
     if isinstance(last, Calibration) and (more or last.flights):
         flight = last.join(flights)
-    with told_progress("report") as report_progress:
-        report(
-            chain,
-            arguments.output,
-            flight,
-            files=files,
-            process_noise=read_numbers(
-                "--process-noise", arguments.process_noise, "NAME=SD, az=0.01"
-            ),
-            progress=report_progress,
-        )
+    report(
+        chain,
+        arguments.output,
+        flight,
+        files=files,
+        process_noise=read_numbers("--process-noise", arguments.process_noise, "NAME=SD, az=0.01"),
+    )
     show(in_line(f"wrote {arguments.output}"))
     return 0
