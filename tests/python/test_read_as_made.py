@@ -112,3 +112,11 @@ def test_netcdf_of_the_classic_form(tmp_path):
         opened.createDimension("row", len(SECONDS))
         opened.createVariable("dp", "f8", ("row",))[:] = PRESSURE
     refuse(lambda: sepcal.read(file), "log.nc: netCDF of the classic form", "nccopy")
+
+
+def test_arrays_of_numpy(tmp_path):
+    """What the line advises makes the table."""
+    file = tmp_path / "log.npz"
+    np.savez(file, time_s=SECONDS, dp_pa=PRESSURE)
+    refuse(lambda: sepcal.read(file), "log.npz: arrays of NumPy", "dict(numpy.load(")
+    assert np.array_equal(sepcal.read(dict(np.load(file)))["dp_pa"], PRESSURE)

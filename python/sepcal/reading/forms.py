@@ -123,4 +123,9 @@ def _of_zip(file: str) -> str:
         raise _core.Error(f"{file}: a binary workbook (.xlsb); save it as .xlsx or CSV")
     if "content.xml" in names:
         raise _core.Error(f"{file}: an OpenDocument file; save the sheet as .xlsx or CSV")
+    if any(name.endswith(".npy") for name in names):
+        raise _core.Error(
+            f"{file}: arrays of NumPy; in Python they are a table: "
+            "sepcal.read(dict(numpy.load('log.npz')))"
+        )
     raise _core.Error(f"{file}: an archive; unpack it and give the log that is in it")
