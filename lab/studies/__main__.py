@@ -14,7 +14,7 @@ from pathlib import Path
 
 from sepcal import Error
 from sepcal.__main__ import BAD_INPUT, Parser
-from sepcal.progress import progress_bar
+from sepcal.progress import show_progress
 from studies import (
     effect_coverage,
     field_strength,
@@ -53,8 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     study: Study = chosen.study
     try:
         check_options(chosen)
-        with progress_bar() as report_progress:
-            outcome = study.run(chosen, report_progress)
+        with show_progress() as report_progress:
+            outcome = study.run(chosen, lambda fraction: report_progress("", fraction))
         if outcome.page:
             print(outcome.page)
         for finding in outcome.findings:

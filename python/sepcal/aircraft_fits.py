@@ -15,7 +15,7 @@ from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
 from sepcal.fit_options import FitOptions
-from sepcal.flight import AnyFlight, Flight, to_flight
+from sepcal.flight import AnyFlight, Flight, to_flight, to_flight_of
 from sepcal.geometry import Aircraft
 from sepcal.intervals import Intervals
 from sepcal.options import spelled_out, to_core, to_names
@@ -37,7 +37,18 @@ Path = str | os.PathLike[str]
 
 
 class AddedRegressor(NamedTuple):
-    """An effect that was added, and the error of each output without and with it."""
+    """An effect that was added, and the error of each output without and with it.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> flight = sepcal.simulate(aircraft, rows=400)
+        >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+        >>> entry = fit.add("CX[alpha*q_hat]").history[0]
+        >>> entry.effect, entry.rmse_after["CX"] <= entry.rmse_before["CX"]
+        ('CX[alpha*q_hat]', True)
+    """
 
     effect: str
     rmse_before: dict[str, float]
@@ -134,6 +145,16 @@ class AircraftFit(Fit):
 
         Raises:
             Error: As in compare().
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> left = fit.residuals()
+            >>> left["CX_residual"].shape, left["why_not"][:1]
+            ((400,), [''])
         """
         chosen = self._or_fitted(flight, "residuals(")
         columns, why_not = self.core.residuals(chosen._core)
@@ -322,7 +343,20 @@ class AircraftFit(Fit):
     def apply_to_file(
         self, file: Path, output: Path, *, process_noise: Mapping[str, float] | None = None
     ) -> _core.Applied:
-        """Copies a CSV log and adds these columns; `output` appears whole or not at all."""
+        """Copies a CSV log and adds these columns; `output` appears whole or not at all.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> flight.to_csv(folder / "flight.csv")
+            >>> fit.apply_to_file(folder / "flight.csv", folder / "modelled.csv").rows
+            400
+            >>> "CX_model" in sepcal.read_csv(folder / "modelled.csv").columns
+            True
+        """
         given = dict(process_noise or {})
         return self.core.apply_to_file(name_of(file), name_of(output), given)
 
@@ -461,6 +495,16 @@ class AircraftFit(Fit):
 
         Raises:
             Error: As sepcal.report().
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> fit.report(folder / "report.html")
+            >>> (folder / "report.html").read_text(encoding="utf-8")[:15]
+            '<!DOCTYPE html>'
         """
         from sepcal.reporting import report
 
@@ -476,24 +520,56 @@ class AircraftFit(Fit):
         """A flight, or several as one. Raises Error, which shows how to call again, for none."""
         flight = flight if flight is not None else self.flight
         if isinstance(flight, Sequence) and not isinstance(flight, str):
-            given = [to_flight(one, call)._core for one in flight]
+            given = [to_flight_of(self.core, one, call)._core for one in flight]
             return Flight._of(states_module().join(given, _core.Options(), self.core))
         if flight is None:
             raise _core.Error(
                 f"a loaded fit has no flight; give one: {call}sepcal.read({self.core.file!r}))"
             )
-        return to_flight(flight, call)
+        return to_flight_of(self.core, flight, call)
 
     def save(self, file: Path) -> None:
-        """Writes to_json() to a file that appears whole or not at all."""
+        """Writes to_json() to a file that appears whole or not at all.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> fit.save(folder / "aero.json")
+            >>> sepcal.load(folder / "aero.json")["CX_alpha"].value == fit["CX_alpha"].value
+            True
+        """
         self.core.save(name_of(file))
 
     def to_json(self) -> str:
-        """The JSON that the app's fit writes with -o."""
+        """The JSON that the app's fit writes with -o.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> _ = (folder / "aero.json").write_text(fit.to_json())
+            >>> sepcal.load(folder / "aero.json").model
+            'aero'
+        """
         return self.core.to_json()
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.Aero(aircraft, "CX"), flight)
+            >>> fit.to_dict()["model"]
+            'aero'
+        """
         read: dict[str, Any] = json.loads(self.to_json())
         return read
 
@@ -509,6 +585,15 @@ class TwoSteps(Page):
         path: The first step.
         aero: The second.
         notes: One line each, for people.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> flight = sepcal.simulate(aircraft, rows=400)
+        >>> steps = sepcal.two_step(flight, aircraft, equations={"CZ": ["1", "alpha"]})
+        >>> steps.path.model, steps.aero.equations
+        ('path', {'CZ': ['1', 'alpha']})
     """
 
     _shown = ("name", "value", "standard_error", "unit")
@@ -523,7 +608,16 @@ class TwoSteps(Page):
         return self._page
 
     def to_json(self) -> str:
-        """The JSON that the app's two-step writes with -o."""
+        """The JSON that the app's two-step writes with -o.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> steps = sepcal.two_step(flight, aircraft, equations={"CZ": ["1", "alpha"]})
+            >>> _ = (folder / "steps.json").write_text(steps.to_json())
+        """
         return self._json
 
     def _summary(self) -> str:
@@ -551,6 +645,14 @@ class TwoSteps(Page):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> steps = sepcal.two_step(flight, aircraft, equations={"CZ": ["1", "alpha"]})
+            >>> drawn = steps.plot("aero", backend="matplotlib")
         """
         from sepcal.plotting import choose
 
@@ -574,7 +676,7 @@ def fit_flights(
     model: AircraftModel, flights: Sequence[AnyFlight], options: FitOptions
 ) -> AircraftFit:
     """Of several flights together, each with initial states of its own; fit_jointly() calls it."""
-    given = [to_flight(one, "fit_jointly(model, [")._core for one in flights]
+    given = [to_flight(one, "fit_jointly(model, [", "", options)._core for one in flights]
     laid = _core_options(model, options)
     joined = Flight._of(states_module().join(given, to_core(options), None))
     return AircraftFit(states_module().fit(joined._core, laid), joined)
@@ -616,7 +718,7 @@ def two_step(
         >>> abs(steps.aero["CZ_alpha"].value / flight.truth["CZ_alpha"] - 1) < 0.1
         True
     """
-    chosen = to_flight(flight, "two_step(")
+    chosen = to_flight(flight, "two_step(", "", options)
     aero = Aero(aircraft, equations=equations, window=window)
     first = (path or FlightPath())._aircraft_options()
     laid = {**aero._aircraft_options(), "trajectory": first["trajectory"]}

@@ -17,7 +17,7 @@ from sepcal.certificates import Certificate
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
-from sepcal.flight import AnyFlight, Flight, to_flight
+from sepcal.flight import AnyFlight, Flight, to_flight_of
 from sepcal.intervals import Intervals, Prediction
 from sepcal.models import Model
 from sepcal.options import to_names
@@ -166,6 +166,13 @@ class Calibration(Fit):
 
         Raises:
             Error: As in compare().
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> left = base.residuals()
+            >>> list(left)[:3], left["airspeed_residual_mps"].shape == (flight.rows,)
+            (['time_s', 'airspeed_measured_mps', 'airspeed_modelled_mps'], True)
         """
         core, chosen = self._on(flight, "residuals(", known=True)
         columns, why_not = core.residuals(chosen._core)
@@ -346,6 +353,12 @@ class Calibration(Fit):
 
         Raises:
             Error: Another flight, a calibration with effects, a probe that can't be enclosed.
+
+        Example:
+            >>> flight = sepcal.simulate("pitot-static", rows=40)
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight, fix={"w_n": -3.8, "w_d": 0.0})
+            >>> base.certify(tolerance=0.01).is_global
+            True
         """
         chosen = self._or_fitted(flight, "certify(")
         return Certificate(self.core.certify(chosen._core, tolerance, boxes))
@@ -494,7 +507,7 @@ class Calibration(Fit):
         return self._to_flight(flight, call)
 
     def _to_flight(self, flight: object, call: str) -> Flight:
-        return to_flight(flight, call, self.core.model)
+        return to_flight_of(self.core, flight, call)
 
     def apply(self, flight: AnyFlight) -> dict[str, Array]:
         """The corrected readings of a flight by header, each of shape (rows,).
@@ -543,11 +556,26 @@ class Calibration(Fit):
         self.core.save(name_of(file))
 
     def to_json(self) -> str:
-        """The JSON that the app's fit writes with -o."""
+        """The JSON that the app's fit writes with -o.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> _ = (folder / "base.json").write_text(base.to_json())
+            >>> sepcal.load(folder / "base.json").names == base.names
+            True
+        """
         return self.core.to_json()
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.to_dict()["status"]
+            'converged'
+        """
         read: dict[str, Any] = json.loads(self.to_json())
         return read
 

@@ -20,7 +20,17 @@ from sepcal.results import Fit
 
 
 class Certificate(_core.Certificate):
-    """What is proven of a fit's cost in the box of its bounds; `print(certificate)` says it."""
+    """What is proven of a fit's cost in the box of its bounds; `print(certificate)` says it.
+
+    Example:
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+        >>> data = {"eta": eta, "z": z + 0.01 * np.sin(50.0 * eta)}
+        >>> fit = sepcal.fit(sepcal.ScalarExample1(), data)
+        >>> certificate = sepcal.certify(sepcal.ScalarExample1(), data, fit)
+        >>> certificate.status, certificate.is_global
+        ('global', True)
+    """
 
     def __str__(self) -> str:
         return self.message
@@ -32,7 +42,15 @@ class Certificate(_core.Certificate):
 
 
 class CostBound(_core.CostBound):
-    """How far the least cost in a box may be below that at one xi2 (Eqs. 7 to 13)."""
+    """How far the least cost in a box may be below that at one xi2 (Eqs. 7 to 13).
+
+    Example:
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+        >>> bound = sepcal.bound_cost(sepcal.ScalarExample1(), {"eta": eta, "z": z}, {"b": 0.2})
+        >>> bound.paper_lower <= bound.lower  # the paper's bound is the looser one
+        True
+    """
 
 
 @spelled_out()
@@ -64,6 +82,14 @@ def certify(
     Raises:
         Error: The fit is not that of the model; a model that can't be enclosed, as one of your own
             in Python; a nonlinear parameter without bounds.
+
+    Example:
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+        >>> data = {"eta": eta, "z": z + 0.01 * np.sin(50.0 * eta)}
+        >>> fit = sepcal.fit(sepcal.ScalarExample1(), data)
+        >>> sepcal.certify(sepcal.ScalarExample1(), data, fit).is_global
+        True
     """
     laid, columns, labels, core, own = as_fitted(model, data, fit, options, measured=True)
     return Certificate(_core.certify(laid, columns, labels, core, own, fit, tolerance, boxes))
@@ -91,6 +117,13 @@ def bound_cost(
     Raises:
         Error: A model that can't be enclosed, xi2p outside of the box, a nonlinear parameter
             without bounds.
+
+    Example:
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+        >>> bound = sepcal.bound_cost(sepcal.ScalarExample1(), {"eta": eta, "z": z}, {"b": 0.2})
+        >>> bound.lower <= bound.cost < 1e-20  # z is exact
+        True
     """
     model = as_model(model)
     columns = take_columns(

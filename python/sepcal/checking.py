@@ -41,11 +41,23 @@ class FlightCheck(Page, _core.FlightCheck):
         return self.text
 
     def to_json(self) -> str:
-        """The JSON that the app's check prints."""
+        """The JSON that the app's check prints.
+
+        Example:
+            >>> check = sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+            >>> check.to_json().startswith("{")
+            True
+        """
         return self.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> check = sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+            >>> check.to_dict()["model"]
+            'pitot-static'
+        """
         read: dict[str, Any] = json.loads(self.json)
         return read
 
@@ -62,6 +74,10 @@ class FlightCheck(Page, _core.FlightCheck):
         Raises:
             Error: Another word for one of these; a check that was pickled; the library is not
                 installed.
+
+        Example:
+            >>> check = sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"))
+            >>> drawn = check.plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_records import picture_check
@@ -80,7 +96,13 @@ class FlightCheck(Page, _core.FlightCheck):
 
 
 @checked
-def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCheck:
+def check(
+    model: AnyModel | Aero | RigidAircraft,
+    flight: AnyFlight,
+    *,
+    delimiter: str = "",
+    decimal: str = "",
+) -> FlightCheck:
     """What a log is, column by column, and what that does to a calibration from it.
 
     Nothing is fitted, and a log that a fit would refuse is described all the same.
@@ -88,6 +110,8 @@ def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCh
     Args:
         model: A probe, a FlightPath, Aero or RigidAircraft, or a model of your own, as for the fit.
         flight: The log, or what read() makes a flight of.
+        delimiter: Of a file, as of read().
+        decimal: Likewise.
 
     Returns:
         A FlightCheck: `columns`, `notes` (worst first; each with what it is, what it does to the
@@ -104,10 +128,11 @@ def check(model: AnyModel | Aero | RigidAircraft, flight: AnyFlight) -> FlightCh
     """
     if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")
+    form = {"delimiter": delimiter, "decimal": decimal}
     if isinstance(model, Aero | RigidAircraft | FlightPath):
         name = model._aircraft_options()["model"]
-        chosen = to_flight(flight, "check(model, ")
+        chosen = to_flight(flight, "check(model, ", "", form)
         return FlightCheck(states_module().check(name, chosen._core), chosen)
     model = as_model(model)
-    chosen = to_flight(flight, "check(model, ", model)
+    chosen = to_flight(flight, "check(model, ", model, form)
     return FlightCheck(_core.check(model._core, chosen._core), chosen)

@@ -25,6 +25,16 @@ class AeroCoefficients:
         window: Of the local cubic that differentiated the rates [s]; NaN where pdot, qdot, rdot
             were given.
         notes: What must be known to read them, a sentence each.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> level = {"time": [0.0, 1.0, 2.0], "az": [-9.81] * 3, "rho": [1.2] * 3, "ax": [0.0] * 3}
+        >>> flow = {"airspeed": [50.0] * 3, "alpha": [0.05] * 3, "beta": [0.0] * 3}
+        >>> found = sepcal.aero_coefficients({**level, **flow}, aircraft, ["CZ"])
+        >>> found.names, found.columns["CZ"].shape
+        (['CZ'], (3,))
     """
 
     columns: dict[str, Array]
@@ -55,6 +65,17 @@ def aero_coefficients(
     Raises:
         Error: What is missing, with the way out; degrees; a vertical acceleration that is no
             specific force.
+
+    Example:
+        >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+        >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+        >>> aircraft = sepcal.Aircraft(**size, **mass)
+        >>> level = {"time": [0.0, 1.0, 2.0], "az": [-9.81] * 3, "rho": [1.2] * 3, "ax": [0.0] * 3}
+        >>> flow = {"airspeed": [50.0] * 3, "alpha": [0.05] * 3, "beta": [0.0] * 3}
+        >>> found = sepcal.aero_coefficients({**level, **flow}, aircraft, ["CZ"])
+        >>> lift = 1100.0 * 9.81 / (0.5 * 1.2 * 50.0**2 * 16.2)
+        >>> bool(np.allclose(found.columns["CZ"], -lift))
+        True
     """
     given = by_name(data)
     numbers = [name for name in given if name != "maneuver"]

@@ -35,11 +35,25 @@ class Comparison(Page, _core.Comparison):
         self.noise = noise or {}
 
     def to_json(self) -> str:
-        """The JSON that the app's compare prints."""
+        """The JSON that the app's compare prints.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.compare().to_json().startswith("{")
+            True
+        """
         return self.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.compare().to_dict()["model"]
+            'pitot-static'
+        """
         read: dict[str, Any] = json.loads(self.json)
         return read
 
@@ -62,6 +76,12 @@ class Comparison(Page, _core.Comparison):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> drawn = base.compare().plot("residuals", backend="matplotlib")
+            >>> drawn.savefig(folder / "residuals.png")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_comparison

@@ -16,6 +16,11 @@ class Concatenation(Model):
 
     Args:
         sensors: (label, model) of each; "": its names stay as they are.
+
+    Example:
+        >>> both = sepcal.concatenate(mag=sepcal.Magnetometer(), acc=sepcal.Accelerometer())
+        >>> [label for label, _ in both.sensors]
+        ['mag', 'acc']
     """
 
     def __init__(self, sensors: Sequence[tuple[str, Model]]) -> None:

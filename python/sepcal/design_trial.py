@@ -47,6 +47,13 @@ class DesignTrial:
 
     Raises:
         Error: The truth or the scatter lacks a name; as fit() refuses an option or the design.
+
+    Example:
+        >>> eta, truth = np.linspace(-3.0, 3.0, 40), {"a": 0.3, "c": 1.0, "b": 0.2}
+        >>> trial = sepcal.DesignTrial(sepcal.ScalarExample1(), {"eta": eta}, truth, 0.1, samples=0)
+        >>> study = sepcal.monte_carlo(trial, 40, seed=1, progress=False)
+        >>> bool(np.all(np.abs(study.estimates.mean(axis=0) - [0.3, 1.0, 0.2]) < 0.05))
+        True
     """
 
     def __init__(
@@ -84,7 +91,15 @@ class DesignTrial:
         self.exact = self._measure()
 
     def draw(self, rng: Generator) -> dict[str, Array]:
-        """The trial's measurements: each output, (N,)."""
+        """The trial's measurements: each output, (N,).
+
+        Example:
+            >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}
+            >>> truth = {"a": 0.3, "c": 1.0, "b": 0.2}
+            >>> trial = sepcal.DesignTrial(wave, design, truth, 0.1, samples=0)
+            >>> trial.draw(np.random.default_rng(1))["z"].shape
+            (40,)
+        """
         if self.stirred:
             return self._stir(rng)
         return {
@@ -110,7 +125,16 @@ class DesignTrial:
         )
 
     def together(self, rngs: Sequence[Generator]) -> list[Estimates | None]:
-        """What a study keeps of the trial of each generator; None where it fails."""
+        """What a study keeps of the trial of each generator; None where it fails.
+
+        Example:
+            >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}
+            >>> truth = {"a": 0.3, "c": 1.0, "b": 0.2}
+            >>> trial = sepcal.DesignTrial(wave, design, truth, 0.1, samples=0)
+            >>> kept = trial.together([np.random.default_rng(seed) for seed in (1, 2)])
+            >>> [one.names for one in kept]
+            [('a', 'c', 'b'), ('a', 'c', 'b')]
+        """
         drawn = [self.draw(rng) for rng in rngs]
         measurements = {name: np.stack([one[name] for one in drawn]) for name in self.exact}
         fits = fit_trials(self.model, self.design, measurements, **self.options)

@@ -60,7 +60,15 @@ class Diagnosis(Page, _core.Diagnosis):
         return [*first, *self.list_beside("equivalent")]
 
     def list_beside(self, beside: str) -> list[str]:
-        """The names of those that stand so beside the first: "equivalent", "fades" or "counts"."""
+        """The names of those that stand so beside the first: "equivalent", "fades" or "counts".
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> found = base.diagnose()  # what depends on altitude looks much the same here
+            >>> "airspeed_bias[altitude_m]" in found.list_beside("equivalent")
+            True
+        """
         return [effect.name for effect in self.effects if effect.beside == beside]
 
     def __getitem__(self, name: str) -> EffectFinding:
@@ -71,11 +79,25 @@ class Diagnosis(Page, _core.Diagnosis):
         raise _core.Error(f"there is no candidate '{name}' in this diagnosis")
 
     def to_json(self) -> str:
-        """The JSON that the app's diagnose writes."""
+        """The JSON that the app's diagnose writes.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.diagnose().to_json().startswith("{")
+            True
+        """
         return self.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.diagnose().to_dict()["verdict"]
+            'effect_missing'
+        """
         read: dict[str, Any] = json.loads(self.json)
         return read
 
@@ -99,6 +121,12 @@ class Diagnosis(Page, _core.Diagnosis):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> drawn = base.diagnose().plot(backend="matplotlib")
+            >>> drawn.savefig(folder / "candidates.png")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_diagnosis

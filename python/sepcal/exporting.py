@@ -10,7 +10,7 @@ from typing import Any, Literal
 from sepcal import _core
 from sepcal.arguments import checked
 from sepcal.calibration import Calibration, Path
-from sepcal.flight import AnyFlight, to_flight
+from sepcal.flight import AnyFlight, to_flight_of
 from sepcal.whole_files import name_of
 
 Target = Literal["c", "cpp", "px4", "ardupilot"]
@@ -31,11 +31,25 @@ class Exported(_core.Exported):
         return self.page
 
     def to_json(self) -> str:
-        """The JSON that the app's export prints."""
+        """The JSON that the app's export prints.
+
+        Example:
+            >>> flight = sepcal.datasets.load("magnetometer")
+            >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+            >>> sepcal.export(base, folder / "compass.h", to="c").to_json().startswith("{")
+            True
+        """
         return self.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> flight = sepcal.datasets.load("magnetometer")
+            >>> base = sepcal.fit(sepcal.Magnetometer(), flight)
+            >>> sepcal.export(base, folder / "compass.param", to="ardupilot").to_dict()["to"]
+            'ardupilot'
+        """
         read: dict[str, Any] = json.loads(self.json)
         return read
 
@@ -98,7 +112,7 @@ def export(
     """
     chosen = calibration.flight
     if flight is not None:
-        chosen = to_flight(flight, "export(..., flight=", calibration.core.model)
+        chosen = to_flight_of(calibration.core, flight, "export(..., flight=")
     turned = None if mounting is None else [float(angle) for angle in mounting]
     if turned is not None and len(turned) != 3:
         raise _core.Error("mounting is not three angles; give roll, pitch, yaw in degrees")

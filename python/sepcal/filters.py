@@ -72,6 +72,14 @@ class SmoothedPass:
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> level = sepcal.Filter(x=[0.0], P=[[100.0]], keep_pass=True)
+            >>> for reading in (1.1, 0.9, 1.0):
+            ...     _ = level.update([reading], H=[[1.0]], R=[[0.01]])
+            ...     level.predict(Phi=[[1.0]], Q=[[0.01]])
+            ...
+            >>> drawn = level.smooth().plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_records import picture_pass
@@ -177,6 +185,12 @@ class Filter:
         Raises:
             Error: Another shape, what is not finite, a covariance that is not positive
                 semidefinite; the filter is as it was.
+
+        Example:
+            >>> fall = sepcal.Filter(x=[100.0, -2.0], P=np.eye(2))  # a height and its rate
+            >>> fall.predict(Phi=[[1.0, 0.5], [0.0, 1.0]], Q=np.zeros((2, 2)))
+            >>> fall.x.tolist()
+            [99.0, -2.0]
         """
         transition = to_matrix("Phi", Phi)
         if x is not None:
@@ -215,6 +229,12 @@ class Filter:
 
         Raises:
             Error: As of predict().
+
+        Example:
+            >>> level = sepcal.Filter(x=[0.0], P=[[1.0]])
+            >>> innovation = level.update([4.0], H=[[1.0]], R=[[1.0]])  # as sure as what was known
+            >>> innovation.e.tolist(), level.x.round(9).tolist()
+            ([4.0], [2.0])
         """
         slope = to_matrix("H", H)
         value = times("H", slope, self.x) if expected is None else to_vector("expected", expected)
@@ -258,6 +278,12 @@ class Filter:
             Error: As of predict(); and where the iterations ended by their cap: the filter then
                 holds the last one's state.
             Exception: What `outputs` raises, as it is; the filter is as it was.
+
+        Example:
+            >>> place = sepcal.Filter(x=[3.0], P=[[100.0]])
+            >>> _ = place.iterated_update([16.0], lambda x: (x**2, [[2.0 * x[0]]]), R=[[1e-6]])
+            >>> place.x.round(4).tolist()
+            [4.0]
         """
         most, step = to_whole_number("iterations", iterations), to_number("tolerance", tolerance)
         if most < 1 or not step > 0.0:
@@ -301,6 +327,15 @@ class Filter:
 
         Raises:
             Error: The pass was not kept, or its steps have noises of different number.
+
+        Example:
+            >>> level = sepcal.Filter(x=[0.0], P=[[1e6]], keep_pass=True)
+            >>> for reading in (1.0, 3.0):
+            ...     _ = level.update([reading], H=[[1.0]], R=[[1.0]])
+            ...     level.predict(Phi=[[1.0]], Q=[[0.0]])
+            ...
+            >>> level.smooth().x[0].round(3).tolist()  # the mean of both
+            [2.0]
         """
         if not self._core.keeps_pass:
             raise _core.Error("the pass was not kept; make the filter with keep_pass=True")

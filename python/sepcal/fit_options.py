@@ -84,6 +84,12 @@ class FitOptions(TypedDict, total=False):
             shows].
         join: Brings quantities that are logged at other times to the rows of the measured one:
             smooth, linear or held [they stand in one row].
+
+    Example:
+        >>> options: sepcal.FitOptions = {"fix": {"w_d": 0.0}, "samples": 100, "seed": 1}
+        >>> base = sepcal.fit(sepcal.PitotStatic(), sepcal.datasets.load("pitot"), **options)
+        >>> base["w_d"].fixed
+        True
     """
 
     effects: Sequence[str | Effect] | None

@@ -80,12 +80,11 @@ def fit(
     if isinstance(model, Aero | RigidAircraft) or (
         isinstance(model, FlightPath) and isinstance(data, Flight | str | os.PathLike)
     ):
-        return fit_flight(model, to_flight(data, "fit(model, "), options)
+        return fit_flight(model, to_flight(data, "fit(model, ", "", options), options)
     model = as_model(model)
     columns_of_model = None if isinstance(data, Flight) else to_columns(data, model)
     if columns_of_model is None:
-        form = options.get("delimiter"), options.get("decimal")
-        data = to_flight(data, "fit(model, ", model, *form)
+        data = to_flight(data, "fit(model, ", model, options)
     if model.runs_in_python:
         options["threads"] = options.get("threads") or 1
     effects = given_effects(options)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Flight logs: the table of a CSV file, or arrays under the same headers."""
 
+import json
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -16,7 +17,7 @@ from sepcal.markup import join
 from sepcal.options import to_names
 from sepcal.plots import Backend, Theme
 from sepcal.printing import as_utf8, in_line
-from sepcal.reading import AIR, MAGNETIC, read_file, reading_for
+from sepcal.reading import AIR, MAGNETIC, is_text, read_file, reading_for
 from sepcal.reading.extras import load
 from sepcal.reading.frames import is_frame, of_frame
 from sepcal.reading.units import quantity_of
@@ -34,6 +35,17 @@ KINDS = {  # by the model's name and by its class
     **dict.fromkeys(("FiveHoleProbe", "PitotStatic", "VaneBoom"), AIR),
     **dict.fromkeys(("magnetometer", "magnetometer-norm", "Magnetometer"), MAGNETIC),
 }
+
+
+class Fitted(Protocol):
+    """A compiled calibration, or fit of an aircraft."""
+
+    @property
+    def model(self) -> str:
+        """Its name."""
+
+    def to_json(self) -> str:
+        """Its file."""
 
 
 class ArrowTable(Protocol):
@@ -188,7 +200,12 @@ class Flight(Mapping[str, Array]):
         return in_line(f"<{type(self).__name__} {self.name!r}: {self.rows} rows of {headers}>")
 
     def head(self, rows: int = ROWS_SHOWN) -> "Flight":
-        """The first rows, as a flight of the same name. Raises Error for fewer than one."""
+        """The first rows, as a flight of the same name. Raises Error for fewer than one.
+
+        Example:
+            >>> sepcal.Flight({"time_s": [0.0, 0.1, 0.2]}).head(2)["time_s"].tolist()
+            [0.0, 0.1]
+        """
         if rows < 1:
             raise _core.Error(f"head({rows}): give one row or more")
         first = Flight(
@@ -205,6 +222,11 @@ class Flight(Mapping[str, Array]):
 
         Raises:
             Error: pandas is not installed.
+
+        Example:
+            >>> flight = sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [150.0, 151.0]}, ["a", "b"])
+            >>> list(flight.to_frame())
+            ['time_s', 'maneuver', 'dp_pa']
         """
         frame = load("pandas", self.name, "to_frame()").DataFrame(dict(self))
         if self.maneuvers:
@@ -216,6 +238,12 @@ class Flight(Mapping[str, Array]):
 
         Raises:
             Error: The file can't be written.
+
+        Example:
+            >>> flight = sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [150.0, 151.0]})
+            >>> flight.to_csv(folder / "log.csv")
+            >>> (folder / "log.csv").read_text().splitlines()
+            ['time_s,dp_pa', '0.0,150.0', '0.1,151.0']
         """
         write_whole({name_of(file): csv_of(self)})
 
@@ -352,23 +380,30 @@ def to_flight(
     flight: object,
     call: str,
     model: object = "",
-    delimiter: str | None = "",
-    decimal: str | None = "",
+    options: Mapping[str, Any] | None = None,
 ) -> Flight:
     """A flight of what read() takes; of a file the sensor of `model`, where it has several.
 
-    `model` is one, or its name; delimiter and decimal are as of read().
+    `model` is one, or its name; of a fit's options delimiter and decimal are taken, as of read().
 
     Raises Error, which shows how to call again, for anything else.
     """
     if isinstance(flight, Flight):
         return flight
     if isinstance(flight, str | os.PathLike):
+        form = {name: (options or {}).get(name) or "" for name in ("delimiter", "decimal")}
         with reading_for(kind_of(model)):
-            return read(flight, delimiter=delimiter or "", decimal=decimal or "")
+            return read(flight, **form)
     if is_frame(flight) or isinstance(flight, Mapping | np.ndarray):
         return Flight(flight)  # type: ignore[arg-type]
     raise _core.Error(f"a {type(flight).__name__} is no flight; give one: {call}sepcal.read(file))")
+
+
+def to_flight_of(fitted: Fitted, flight: object, call: str) -> Flight:
+    """The same for a later verb: a table as text has the form that the fit was told of its own."""
+    has_form = isinstance(flight, str | os.PathLike) and is_text(name_of(flight))
+    options = json.loads(fitted.to_json())["options"] if has_form else None
+    return to_flight(flight, call, fitted.model, options)
 
 
 def kind_of(model: object) -> str:

@@ -53,7 +53,14 @@ class Aircraft:
     rate_reference: Literal["c/V", "c/2V"] | str = "c/2V"
 
     def to_json(self) -> str:
-        """As the app takes it with --geometry."""
+        """As the app takes it with --geometry.
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> _ = (folder / "aircraft.json").write_text(aircraft.to_json())  # for --geometry
+        """
         entries: dict[str, Any] = {
             "area_m2": float(self.area),
             "chord_m": float(self.chord),

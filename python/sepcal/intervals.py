@@ -49,11 +49,25 @@ class Intervals(Page, _core.Intervals):
         return found_by(super().__getitem__, name)
 
     def to_json(self) -> str:
-        """The JSON; of a calibration's, what the app's `intervals` prints."""
+        """The JSON; of a calibration's, what the app's `intervals` prints.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.intervals(names=["s_va"]).to_json().startswith("{")
+            True
+        """
         return self.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined or infinite."""
+        """The same as a dictionary; None where a number is undefined or infinite.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.intervals(names=["s_va"]).to_dict()["level"]
+            0.95
+        """
         read: dict[str, Any] = json.loads(self.json)
         return read
 
@@ -69,6 +83,11 @@ class Intervals(Page, _core.Intervals):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> drawn = base.intervals(names=["w_n", "w_e"]).plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_fits import picture_intervals
@@ -150,6 +169,11 @@ class Prediction(_core.Prediction):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> drawn = base.predict().plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_fits import picture_prediction

@@ -32,6 +32,12 @@ def join(flight: Flight, other: Flight, how: str = "smooth", offset: float = 0.0
     Raises:
         Error: A log without a time, or one that runs back; clocks that have no time in common;
             another `how`; an offset that is no number.
+
+    Example:
+        >>> tube = sepcal.Flight({"time_s": [0.0, 0.4, 0.8], "dp_pa": [150.0, 151.0, 152.0]})
+        >>> gnss = sepcal.Flight({"time_s": [0.0, 0.5, 1.0], "vn_mps": [10.0, 20.0, 30.0]})
+        >>> sepcal.join(tube, gnss, how="linear")["vn_mps"].tolist()
+        [10.0, 18.0, 26.0]
     """
     joined = _core.join_rates(
         to_flight(flight, "sepcal.join(")._core,

@@ -93,7 +93,7 @@ def fit_jointly(
         options["threads"] = options.get("threads") or 1
     core, joined = _core.calibrate_jointly(
         subject._core,
-        [to_flight(flight, "fit_jointly(model, [", subject)._core for flight in flights],
+        [to_flight(flight, "fit_jointly(model, [", subject, options)._core for flight in flights],
         to_names("own", own),
         to_core(options),
         to_core_effects(effects),

@@ -51,6 +51,17 @@ class LeastSquares:
         root: [R q; 0 rho], (n + 1, n + 1), of all samples about p: R'R is the information.
         count: Numbers that were there in all samples.
         cost: V(p), half the weighted sum of squares, S 4.5.
+
+    Example:
+        >>> t = np.array([0.0, 1.0, 2.0, 3.0])
+        >>> y = 2.0 * np.exp(-0.5 * t)
+        >>> def sample(k, p):
+        ...     gain = np.exp(-p[1] * t[k])
+        ...     return [y[k] - p[0] * gain], [[gain, -p[0] * t[k] * gain]]
+        ...
+        >>> found = sepcal.iterate_least_squares(sample, 4, [1.0, 0.1])
+        >>> found.status, found.p.round(6).tolist()
+        ('converged', [2.0, 0.5])
     """
 
     status: Status
@@ -193,6 +204,14 @@ class RecursiveLeastSquares:
         Raises:
             Error: Another shape, what is not finite, a covariance that is not positive definite;
                 nothing was changed.
+
+        Example:
+            >>> mean = sepcal.RecursiveLeastSquares(1)
+            >>> for reading in (1.0, 3.0, np.nan):  # the last is missing
+            ...     mean.absorb([1.0], reading)
+            ...
+            >>> mean.solution.round(9).tolist()
+            [2.0]
         """
         values = to_vector("y", np.atleast_1d(to_numbers("y", y)))
         slope = to_matrix("H", np.atleast_2d(to_numbers("H", H)))

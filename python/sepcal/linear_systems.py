@@ -43,6 +43,11 @@ class Transition:
         Phi: (n, n), exp(F dt).
         Q: Covariance of the noise that the step adds to the state, (n, n).
         x: The state at its end, (n,); None of a linear system, where it is Phi x.
+
+    Example:
+        >>> step = sepcal.discretise([[0.0, 1.0], [0.0, 0.0]], np.zeros((2, 2)), 0.1)
+        >>> step.Phi.tolist(), step.x is None
+        ([[1.0, 0.1], [0.0, 1.0]], True)
     """
 
     Phi: Array
@@ -85,6 +90,11 @@ class DiscreteInputs:
         held: (n_x, n_u): x(k+1) = Phi x(k) + held u(k).
         begin: (n_x, n_u), of inputs that are linear between samples:
         end: (n_x, n_u): x(k+1) = Phi x(k) + begin u(k) + end u(k+1).
+
+    Example:
+        >>> parts = sepcal.discretise_inputs([[0.0]], [[1.0]], 0.1)  # an integral
+        >>> parts.held.round(9).tolist(), parts.begin.round(9).tolist(), parts.end.round(9).tolist()
+        ([[0.1]], [[0.05]], [[0.05]])
     """
 
     held: Array

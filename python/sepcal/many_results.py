@@ -35,7 +35,13 @@ class ManyFit(_core.ManyFit):
         return self.status == "converged"
 
     def departed(self, level: float = 0.01) -> list[str]:
-        """Flights that depart from the others, by p_holm below `level`; the surest first."""
+        """Flights that depart from the others, by p_holm below `level`; the surest first.
+
+        Example:
+            >>> days = [sepcal.simulate("pitot-static", rows=200, seed=seed) for seed in (1, 2, 3)]
+            >>> sepcal.fit_many(sepcal.PitotStatic(), days).departed()  # none: all fly one tube
+            []
+        """
         found = [name for name, one in self.flights.items() if one.departure.p_holm < level]
         return sorted(found, key=lambda name: self.flights[name].departure.p)
 
@@ -60,6 +66,10 @@ class ManyFit(_core.ManyFit):
         Raises:
             Error: Another word for one of these; "own" where no flight has any; the library is not
                 installed.
+
+        Example:
+            >>> days = [sepcal.simulate("pitot-static", rows=200, seed=seed) for seed in (1, 2, 3)]
+            >>> drawn = sepcal.fit_many(sepcal.PitotStatic(), days).plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_studies import picture_flights

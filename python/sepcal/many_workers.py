@@ -128,7 +128,7 @@ def _prepare(question: Question) -> tuple[_core.PreparedFlight, str] | None:
         return None
     options, own, model = to_core(task.options), list(task.own), task.model
     if isinstance(source, str | os.PathLike):
-        source = to_flight(source, "fit_many(model, ", model)
+        source = to_flight(source, "fit_many(model, ", model, question.task.options)
     if isinstance(source, Flight):
         flight = _core.prepare_flight(model._core, source._core, options, own)
         sha256, cells = source.sha256, source.rows * len(source)

@@ -27,6 +27,11 @@ class Model:
         nonlinear: Names of xi2, n_2.
         units: Unit of every input, output and parameter by name.
         bounds: Default (lower, upper) of every parameter by name, in its unit; infinite where open.
+
+    Example:
+        >>> tube = sepcal.PitotStatic()
+        >>> isinstance(tube, sepcal.Model), tube.outputs, tube.units["w_n"]
+        (True, ('airspeed',), 'm/s')
     """
 
     runs_in_python = False  # it then lets one thread in at a time
@@ -73,6 +78,11 @@ class Model:
 
         Raises:
             Error: An input is missing or of another length, a parameter is missing or unknown.
+
+        Example:
+            >>> A, b = sepcal.ScalarExample1().evaluate({"eta": [0.0]}, {"b": 0.0})
+            >>> A.tolist(), b.tolist()
+            ([[[1.0, 1.0]]], [[1.0]])
         """
         columns = take_columns(self._owner, record, self._columns_in(record))
         core = self._core.along(columns, labels_in(record))
@@ -89,7 +99,13 @@ class Model:
         return rows[:, :, :n_1], rows[:, :, -1], rows[:, :, n_1:-1]
 
     def at_noise(self, noise: Mapping[str, float]) -> "Model":
-        """The model where its outputs have these standard deviations: itself, unless it depends."""
+        """The model where its outputs have these standard deviations: itself, unless it depends.
+
+        Example:
+            >>> tube = sepcal.PitotStatic()
+            >>> tube.at_noise({"airspeed": 0.3}) is tube
+            True
+        """
         del noise
         return self
 
@@ -329,7 +345,13 @@ class Magnetometer(Model):
         )
 
     def at_noise(self, noise: Mapping[str, float]) -> Model:
-        """Of a strength: noise makes readings longer, by which the model corrects them."""
+        """Of a strength: noise makes readings longer, by which the model corrects them.
+
+        Example:
+            >>> sensor = sepcal.Magnetometer(field_strength=50.0)
+            >>> sensor.at_noise({"field": 0.1}).nonlinear == sensor.nonlinear
+            True
+        """
         if self.field_strength is None:
             return self
         return Model(_core.attitude_independent_magnetometer(self.field_strength, noise["field"]))

@@ -49,7 +49,8 @@ def spelled_out(*, without: Collection[str] = ()) -> Callable[[Function], Functi
         spelled = signature.replace(parameters=[*kept, *options])
         function.__signature__ = spelled  # type: ignore[attr-defined]
         if function.__doc__ and FitOptions.__doc__:  # none under python -OO
-            each = inspect.getdoc(FitOptions).partition("Attributes:\n")[2]  # type: ignore[union-attr]
+            of_options = inspect.getdoc(FitOptions) or ""
+            each = of_options.partition("Attributes:\n")[2].partition("\n\nExample:\n")[0]
             text = inspect.cleandoc(function.__doc__)
             function.__doc__ = text.replace("    **options: FitOptions.", each)
         return function

@@ -29,7 +29,8 @@ from sepcal.models import Model
 from sepcal.options import ROWS
 from sepcal.own_state_model import to_own
 from sepcal.pages import Page
-from sepcal.printing import in_line, page_of, show, tell, told_work
+from sepcal.printing import in_line, page_of, show, tell
+from sepcal.progress import show_engine
 from sepcal.whole_files import name_of, refuse_outputs, write_whole
 
 Commands = argparse._SubParsersAction
@@ -93,7 +94,7 @@ def _add(
 def _run_or_name_line(run: Callable[[argparse.Namespace], int], given: argparse.Namespace) -> int:
     """Raises Error with the line of the model's file where the model itself fails."""
     try:
-        with told_work(f"sepcal model {given.verb}"):
+        with show_engine(f"sepcal model {given.verb}"):
             return run(given)
     except (_core.Error, OSError, MemoryError):
         raise

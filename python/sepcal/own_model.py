@@ -32,18 +32,25 @@ OPEN = (-math.inf, math.inf)
 class SeparableModel(Protocol):
     """What sepcal.fit() takes as a model of your own.
 
-        class WindBox:
-            inputs = {"v": "m/s", "psi": "rad"}
-            outputs = {"vn": "m/s", "ve": "m/s"}
-            linear = {"k": "1", "w_n": "m/s", "w_e": "m/s"}
-            nonlinear = {"delta": ("rad", -0.5, 0.5)}
-
-            def at(self, u, xi2):
-                A = np.zeros((len(u.v), 2, 3))
-                A[:, 0, 0] = u.v * np.cos(u.psi + xi2[0])
-                A[:, 1, 0] = u.v * np.sin(u.psi + xi2[0])
-                A[:, 0, 1] = A[:, 1, 2] = 1.0
-                return A, np.zeros((len(u.v), 2))
+        >>> class WindBox:
+        ...     inputs = {"v": "m/s", "psi": "rad"}
+        ...     outputs = {"vn": "m/s", "ve": "m/s"}
+        ...     linear = {"k": "1", "w_n": "m/s", "w_e": "m/s"}
+        ...     nonlinear = {"delta": ("rad", -0.5, 0.5)}
+        ...
+        ...     def at(self, u, xi2):
+        ...         A = np.zeros((len(u.v), 2, 3))
+        ...         A[:, 0, 0] = u.v * np.cos(u.psi + xi2[0])
+        ...         A[:, 1, 0] = u.v * np.sin(u.psi + xi2[0])
+        ...         A[:, 0, 1] = A[:, 1, 2] = 1.0
+        ...         return A, np.zeros((len(u.v), 2))
+        ...
+        >>> psi = np.linspace(0.0, 6.0, 40)
+        >>> data = {"v": np.full(40, 20.0), "psi": psi}
+        >>> data |= {"vn": 20.0 * np.cos(psi + 0.1) + 3.0, "ve": 20.0 * np.sin(psi + 0.1)}
+        >>> fit = sepcal.fit(WindBox(), data, noise={"vn": 0.1, "ve": 0.1})
+        >>> round(fit["delta"].value, 6), round(fit["w_n"].value, 6)
+        (0.1, 3.0)
 
     The tables are {name: unit}, and {name: (unit, lower, upper)} for a parameter with bounds, which
     every nonlinear parameter that is sampled needs (None: open); or lists of (name, unit) and
@@ -99,6 +106,19 @@ class OwnModel(Model):
 
     Raises:
         Error: A table or at() is missing, a table is of another form, empty or has a name twice.
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> model = sepcal.OwnModel(Line())
+        >>> A, b = model.evaluate({"v": v}, {})
+        >>> A.shape, b.shape
+        ((50, 1, 1), (50, 1))
     """
 
     runs_in_python = True

@@ -35,20 +35,28 @@ TABLES = ("inputs", "states", "outputs", "linear", "nonlinear")
 class StateModel(Protocol):
     """What sepcal.fit() takes as a model with a state of your own.
 
-        class RollMode:
-            inputs = {"aileron": "rad"}
-            states = {"p": "rad/s"}
-            outputs = {"p_m": "rad/s"}
-            linear = {"b_p": "rad/s"}
-            nonlinear = {"Lp": ("1/s", -20, 0), "La": "1/s^2"}
-            linear_dynamic = ["La"]
+        >>> class RollMode:
+        ...     inputs = {"aileron": "rad"}
+        ...     states = {"p": "rad/s"}
+        ...     outputs = {"p_m": "rad/s"}
+        ...     linear = {"b_p": "rad/s"}
+        ...     nonlinear = {"Lp": ("1/s", -20, 0), "La": "1/s^2"}
+        ...     linear_dynamic = ["La"]
+        ...
+        ...     def rate(self, x, u, p):
+        ...         Lp, La = p
+        ...         return [Lp * x[0] + La * u.aileron]
+        ...
+        ...     def at(self, x, u, p):
+        ...         return [[1.0]], [x[0]]
+        ...
+        >>> t = np.linspace(0.0, 3.0, 100)
+        >>> p = 0.3 * t - 0.15 * (1.0 - np.exp(-2.0 * t))
+        >>> data = {"time": t, "aileron": 0.1 * t, "p_m": p}
+        >>> fit = sepcal.fit(RollMode(), data, noise={"p_m": 0.01})
+        >>> round(fit["Lp"].value, 3), round(fit["La"].value, 3)
+        (-2.0, 6.0)
 
-            def rate(self, x, u, p):
-                Lp, La = p
-                return [Lp * x[0] + La * u.aileron]
-
-            def at(self, x, u, p):
-                return [[1.0]], [x[0]]
 
     x' = f(x, u, p) is rate(), z = A(x, u, p) xi1 + b(x, u, p) + v is at(). The tables are those of
     a SeparableModel, and `states`, whose bounds are those of the initial states. The data have
@@ -117,6 +125,19 @@ class Trajectory(TrajectoryModel):
     Raises:
         Error: A table, rate() or at() is missing, a table is of another form, empty, or has a name
             twice; an option names what the model doesn't have.
+
+    Example:
+        >>> class RollMode:
+        ...     inputs, states, outputs = {"aileron": "rad"}, {"p": "rad/s"}, {"p_m": "rad/s"}
+        ...     linear, nonlinear = {"b_p": "rad/s"}, {"Lp": ("1/s", -20, 0), "La": "1/s^2"}
+        ...     linear_dynamic = ["La"]
+        ...     def rate(self, x, u, p):
+        ...         return [p[0] * x[0] + p[1] * u.aileron]
+        ...     def at(self, x, u, p):
+        ...         return [[1.0]], [x[0]]
+        ...
+        >>> sepcal.Trajectory(RollMode(), substeps=2).options["substeps"]
+        2
     """
 
     runs_in_python = True

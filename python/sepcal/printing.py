@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the package writes for people: names and messages, each in one line, and the terminal."""
+"""What the package writes for people: names and messages, each in one line."""
 
 from __future__ import annotations
 
 import os
 import sys
-import threading
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 
 from sepcal import _core
 
@@ -56,61 +53,3 @@ def tell(text: object) -> None:
     """Says something on standard error, if there is one."""
     if sys.stderr is not None:
         print(in_line(text), file=sys.stderr)
-
-
-@contextmanager
-def told_work(command: str, every: float = 10.0) -> Iterator[None]:
-    """Shows what the engine is doing and for how long, on standard error.
-
-    On a terminal in one line that is written anew each second, elsewhere a line every so many.
-    """
-    live = sys.stderr is not None and sys.stderr.isatty()
-    task, begun, fraction = "", time.monotonic(), 0.0
-    ended = threading.Event()
-
-    def hear(named: str, done: float) -> None:
-        nonlocal task, begun, fraction
-        if named != task:
-            task, begun = named, time.monotonic()
-        fraction = done
-
-    def show_on() -> None:
-        while not ended.wait(1.0 if live else every):
-            line = f"{command}: {in_line(task or 'at work')}, {time.monotonic() - begun:.0f} s"
-            if 0.0 < fraction < 1.0:
-                line += f", {100.0 * fraction:.0f} %"
-            print(f"\r\033[K{line}" if live else line, end="" if live else "\n", file=sys.stderr)
-            sys.stderr.flush()
-
-    teller = threading.Thread(target=show_on, daemon=True)
-    if sys.stderr is not None:
-        teller.start()
-        _core.hear_progress(hear)
-    try:
-        yield
-    finally:
-        _core.hear_progress(None)
-        ended.set()
-        if live:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)
-
-
-@contextmanager
-def told_progress(command: str) -> Iterator[Callable[[str], None]]:
-    """Gives a function that shows what is being done where standard error is a terminal."""
-    live = sys.stderr is not None and sys.stderr.isatty()
-
-    def report_progress(what: str) -> None:
-        if live:
-            print(
-                f"\r\033[Ksepcal {command}: {in_line(what)} ...",
-                end="",
-                file=sys.stderr,
-                flush=True,
-            )
-
-    try:
-        yield report_progress
-    finally:
-        if live:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)

@@ -81,6 +81,13 @@ class Fit(Page, _core.Fit):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> eta = np.linspace(-3.0, 3.0, 40)
+            >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+            >>> data = {"eta": eta, "z": z + 0.01 * np.sin(50.0 * eta)}
+            >>> fit = sepcal.fit(sepcal.ScalarExample1(), data)
+            >>> drawn = fit.plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_fit

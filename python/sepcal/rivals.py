@@ -55,33 +55,67 @@ class _Named:
 
 
 class SingleStageFit(_Named, _core.SingleStageFit):
-    """All parameters at once by one nonlinear programme, from one start."""
+    """All parameters at once by one nonlinear programme, from one start.
+
+    Example:
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+        >>> found = sepcal.rivals.fit_single_stage(
+        ...     sepcal.ScalarExample1(), {"eta": eta, "z": z}, noise={"z": 0.1}
+        ... )
+        >>> round(found.by_name()["b"], 6)
+        0.2
+    """
 
 
 class HauptKasdinFit(_Named, _core.HauptKasdinFit):
-    """A two-step fit by a change of variables; `first` is its first step."""
+    """A two-step fit by a change of variables; `first` is its first step.
+
+    Example:
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+        >>> problem = sepcal.rivals.ExampleInThreeStates()
+        >>> found = sepcal.rivals.fit_haupt_kasdin(problem, {"eta": eta, "z": z}, noise={"z": 0.1})
+        >>> round(found.by_name()["b"], 6)
+        0.2
+    """
 
 
 class AlonsoShusterFit(_Named, _core.AlonsoShusterFit):
-    """TWOSTEP's magnetometer: the reading is C h + n, `shape` is C C', `bias` is n."""
+    """TWOSTEP's magnetometer: the reading is C h + n, `shape` is C C', `bias` is n.
+
+    Example:
+        >>> ways = np.random.default_rng(1).normal(size=(60, 3))
+        >>> field = 50.0 * ways / np.linalg.norm(ways, axis=1, keepdims=True)
+        >>> data = dict(zip(("mx", "my", "mz"), (field + [1.0, 2.0, 3.0]).T, strict=True))
+        >>> found = sepcal.rivals.fit_alonso_shuster(data, 50.0, noise=0.01, bias_alone=True)
+        >>> np.round(found.bias, 3).tolist()
+        [1.0, 2.0, 3.0]
+    """
 
 
 class TwoStepProblem(Protocol):
     """What fit_haupt_kasdin() takes: states in which the measurements are linear.
 
-        class Tone:  # z = (1 + a) cos(eta + b) + c
-            inputs = {"eta": "rad"}
-            outputs = {"z": "1"}
-            states = {"x": "1", "y": "1", "level": "1"}
-            parameters = {"a": "1", "c": "1", "b": ("rad", -1.5, 1.5)}
-
-            def rows(self, u):
-                H = np.stack([np.cos(u.eta), -np.sin(u.eta), np.ones_like(u.eta)], axis=-1)
-                return H[:, np.newaxis, :]
-
-            def at(self, xi):
-                a, c, b = xi
-                return np.array([(1 + a) * np.cos(b), (1 + a) * np.sin(b), c])
+        >>> class Tone:  # z = (1 + a) cos(eta + b) + c
+        ...     inputs = {"eta": "rad"}
+        ...     outputs = {"z": "1"}
+        ...     states = {"x": "1", "y": "1", "level": "1"}
+        ...     parameters = {"a": "1", "c": "1", "b": ("rad", -1.5, 1.5)}
+        ...
+        ...     def rows(self, u):
+        ...         H = np.stack([np.cos(u.eta), -np.sin(u.eta), np.ones_like(u.eta)], axis=-1)
+        ...         return H[:, np.newaxis, :]
+        ...
+        ...     def at(self, xi):
+        ...         a, c, b = xi
+        ...         return np.array([(1 + a) * np.cos(b), (1 + a) * np.sin(b), c])
+        ...
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> data = {"eta": eta, "z": 1.3 * np.cos(eta + 0.2) + 1.0}
+        >>> found = sepcal.rivals.fit_haupt_kasdin(Tone(), data, noise={"z": 0.1})
+        >>> round(found.by_name()["b"], 6)
+        0.2
 
     Tables as those of a SeparableModel.
     """
@@ -125,6 +159,11 @@ class ExampleInFiveStates(BuiltInProblem):
     """The paper's first example in its five states (Eq. 28): H is of rank three.
 
     z = (1 + a) cos(eta + b) + c, y = [a cos b, a sin b, cos b, sin b, c]; parameters a, c, b.
+
+    Example:
+        >>> problem = sepcal.rivals.ExampleInFiveStates()
+        >>> problem.at([0.5, 1.0, 0.0]).tolist()  # a cos b, a sin b, cos b, sin b, c
+        [0.5, 0.0, 1.0, 0.0, 1.0]
     """
 
     def __init__(self) -> None:
@@ -132,7 +171,13 @@ class ExampleInFiveStates(BuiltInProblem):
 
 
 class ExampleInThreeStates(BuiltInProblem):
-    """The same in the states that it has, [(1 + a) cos b, (1 + a) sin b, c]."""
+    """The same in the states that it has, [(1 + a) cos b, (1 + a) sin b, c].
+
+    Example:
+        >>> problem = sepcal.rivals.ExampleInThreeStates()
+        >>> problem.at([0.5, 1.0, 0.0]).tolist()  # (1 + a) cos b, (1 + a) sin b, c
+        [1.5, 0.0, 1.0]
+    """
 
     def __init__(self) -> None:
         super().__init__(_core.example_in_three_states())
@@ -146,6 +191,11 @@ class MagnetometerInNineStates(BuiltInProblem):
 
     Args:
         field_strength: |h| [uT].
+
+    Example:
+        >>> problem = sepcal.rivals.MagnetometerInNineStates(50.0)
+        >>> problem.at([0.0] * 9).shape
+        (9,)
     """
 
     def __init__(self, field_strength: float) -> None:
@@ -189,6 +239,15 @@ def fit_single_stage(
 
     Raises:
         Error: Bad input or misuse: one line that names the culprit and the way out.
+
+    Example:
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+        >>> found = sepcal.rivals.fit_single_stage(
+        ...     sepcal.ScalarExample1(), {"eta": eta, "z": z}, noise={"z": 0.1}
+        ... )
+        >>> {name: round(value, 6) for name, value in found.by_name().items()}
+        {'a': 0.3, 'c': 1.0, 'b': 0.2}
     """
     _check_choice("solver", solver, SOLVERS)
     _check_choice("cost", cost, ("mean", "sum"))
@@ -245,6 +304,14 @@ def fit_haupt_kasdin(
 
     Raises:
         Error: Bad input or misuse: one line that names the culprit and the way out.
+
+    Example:
+        >>> eta = np.linspace(-3.0, 3.0, 40)
+        >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+        >>> problem = sepcal.rivals.ExampleInThreeStates()
+        >>> found = sepcal.rivals.fit_haupt_kasdin(problem, {"eta": eta, "z": z}, noise={"z": 0.1})
+        >>> {name: round(value, 6) for name, value in found.by_name().items()}
+        {'a': 0.3, 'c': 1.0, 'b': 0.2}
     """
     if isinstance(problem, BuiltInProblem):
         core, first = problem._core, problem._first
@@ -301,6 +368,14 @@ def fit_alonso_shuster(
 
     Raises:
         Error: Columns that are missing, too few rows, a strength or noise that is not positive.
+
+    Example:
+        >>> ways = np.random.default_rng(1).normal(size=(60, 3))
+        >>> field = 50.0 * ways / np.linalg.norm(ways, axis=1, keepdims=True)
+        >>> data = dict(zip(("mx", "my", "mz"), (field + [1.0, 2.0, 3.0]).T, strict=True))
+        >>> found = sepcal.rivals.fit_alonso_shuster(data, 50.0, noise=0.01)
+        >>> np.round(found.bias, 3).tolist()
+        [1.0, 2.0, 3.0]
     """
     data = by_name(data)
     wanted = ["mx", "my", "mz", *sorted({"field_change", "time"} & set(data))]

@@ -17,7 +17,7 @@ from sepcal._core import Error
 from sepcal.arguments import checked
 from sepcal.executors import Executors, stream
 from sepcal.monte_carlo_results import MonteCarlo, check_truth
-from sepcal.progress import progress_bar
+from sepcal.progress import show_progress
 from sepcal.trials import (
     TogetherRun,
     TrialFunction,
@@ -175,5 +175,5 @@ def _progress_of(progress: bool | Literal["tqdm"] | Progress | None) -> Iterator
     if callable(progress):
         yield progress
         return
-    with progress_bar(progress) as report_progress:
-        yield lambda done, total: report_progress(done / total)
+    with show_progress(shown=progress) as report_progress:
+        yield lambda done, total: report_progress("", done / total)

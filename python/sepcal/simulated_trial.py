@@ -73,7 +73,13 @@ class SimulatedTrial:
             )
 
     def fly(self, rng: Generator) -> SimulatedFlight:
-        """The trial's flight."""
+        """The trial's flight.
+
+        Example:
+            >>> trial = sepcal.SimulatedTrial(sepcal.PitotStatic(), simulation={"rows": 60})
+            >>> trial.fly(np.random.default_rng(1)).rows
+            60
+        """
         return simulate(self.model, **self.simulation, seed=int(rng.integers(SEEDS)))
 
     def __call__(self, rng: Generator) -> tuple[Calibration, dict[str, float]]:

@@ -82,6 +82,11 @@ class Smoothed(_core.SmoothedRecord):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+            >>> drawn = path.smooth({"ax": 0.05}).plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_records import picture_smoothed
@@ -133,6 +138,24 @@ def smooth(
     Raises:
         Error: No process noise, or one that the model doesn't have; a model without a state; an
             input that is missing; where the filter can't go on, the row.
+
+    Example:
+        >>> class RollMode:
+        ...     inputs, states, outputs = {"aileron": "rad"}, {"p": "rad/s"}, {"p_m": "rad/s"}
+        ...     linear, nonlinear = {"b_p": "rad/s"}, {"Lp": ("1/s", -20, 0), "La": "1/s^2"}
+        ...     linear_dynamic, noise = ["La"], {"p": "rad/s/sqrt(s)"}
+        ...     def rate(self, x, u, p):
+        ...         return [p[0] * x[0] + p[1] * u.aileron]
+        ...     def at(self, x, u, p):
+        ...         return [[1.0]], [x[0]]
+        ...
+        >>> t = np.linspace(0.0, 3.0, 100)
+        >>> p = 0.3 * t - 0.15 * (1.0 - np.exp(-2.0 * t))
+        >>> data = {"time": t, "aileron": 0.1 * t, "p_m": p}
+        >>> fit = sepcal.fit(RollMode(), data, noise={"p_m": 0.01})
+        >>> smoothed = sepcal.smooth(RollMode(), data, fit, {"p": 0.01})
+        >>> bool(np.allclose(smoothed["p"] + fit["b_p"].value, data["p_m"], atol=1e-4))
+        True
     """
     model = as_model(model)
     if fit.effects:

@@ -70,11 +70,25 @@ class Stepwise(Page, Generic[Fitted]):
         return kept
 
     def to_json(self) -> str:
-        """The JSON that the app's diagnose --auto writes with -o: the fit, with the steps."""
+        """The JSON that the app's diagnose --auto writes with -o: the fit, with the steps.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.diagnose(auto=True, most=1).to_json().startswith("{")
+            True
+        """
         return self.json
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; None where a number is undefined."""
+        """The same as a dictionary; None where a number is undefined.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> base.diagnose(auto=True, most=1).to_dict()["status"]
+            'converged'
+        """
         read: dict[str, Any] = json.loads(self.json)
         return read
 
@@ -90,6 +104,11 @@ class Stepwise(Page, Generic[Fitted]):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> drawn = base.diagnose(auto=True, most=1).plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_fits import picture_stepwise

@@ -50,7 +50,16 @@ class Track(_core.Track):
         return np.asarray(self.estimates[:, self._place(name)])
 
     def standard_deviation(self, name: str) -> Array:
-        """Of one estimate against time, (M,)."""
+        """Of one estimate against time, (M,).
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+            >>> track = path.track(start_rows=200)
+            >>> spread = track.standard_deviation("b_ax")
+            >>> bool(spread[-1] < spread[0])  # every row tells more
+            True
+        """
         return np.asarray(self.standard_deviations[:, self._place(name)])
 
     def plot(
@@ -72,6 +81,11 @@ class Track(_core.Track):
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> path = sepcal.fit(sepcal.FlightPath(), flight)
+            >>> drawn = path.track(start_rows=200).plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_records import picture_track
@@ -162,6 +176,19 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
         Error: No start, or two; rows that are too few; names that the model doesn't have; what
             fit() refuses.
         TypeError: An option that there isn't.
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> data = {"v": v, "z": 2.0 * v + np.sin(9.0 * v)}
+        >>> track = sepcal.track(Line(), data, start_rows=10, method="rls")
+        >>> float(track["k"][-1].round(1))
+        2.0
     """
     if (fitted is None) == (start_rows is None):
         raise _core.Error(

@@ -42,6 +42,11 @@ class TrajectoryOptions(TypedDict, total=False):
             parameters [True].
         scales_about_start: A scale multiplies the change of its output since the start, as SIDPAC
             has it [False].
+
+    Example:
+        >>> laid: sepcal.TrajectoryOptions = {"inputs": "hold", "substeps": 2}
+        >>> sepcal.ShortPeriod(**laid).options["substeps"]
+        2
     """
 
     inputs: Literal["linear", "hold"] | str
@@ -66,6 +71,11 @@ class TrajectoryModel(Model):
     Attributes:
         states: Names of x.
         options: TrajectoryOptions, complete.
+
+    Example:
+        >>> mode = sepcal.ShortPeriod()
+        >>> isinstance(mode, sepcal.TrajectoryModel), mode.states
+        (True, ('alpha', 'q'))
     """
 
     states: tuple[str, ...]

@@ -28,7 +28,19 @@ def __dir__() -> list[str]:
 
 
 class Reference(Protocol):
-    """What a triad sees: tables `inputs`, `outputs` (three), `nonlinear` (may be empty)."""
+    """What a triad sees: tables `inputs`, `outputs` (three), `nonlinear` (may be empty).
+
+    Example:
+        >>> class Rates:  # of a gyroscope, in body axes
+        ...     inputs = {"p": "rad/s", "q": "rad/s", "r": "rad/s"}
+        ...     outputs = {"gx": "rad/s", "gy": "rad/s", "gz": "rad/s"}
+        ...     nonlinear = {}
+        ...     def at(self, u, xi):
+        ...         return np.column_stack(u)
+        ...
+        >>> sepcal.Triad(Rates(), sepcal.triads.Misalignment()).linear[3]
+        ('n_x', 'rad/s')
+    """
 
     inputs: Table
     outputs: Table
@@ -39,7 +51,18 @@ class Reference(Protocol):
 
 
 class Factor(Protocol):
-    """A matrix through which it sees; a table `nonlinear` of its own parameters."""
+    """A matrix through which it sees; a table `nonlinear` of its own parameters.
+
+    Example:
+        >>> class Turned:  # about the vertical axis alone
+        ...     nonlinear = {"psi": ("rad", -0.5, 0.5)}
+        ...     def matrix(self, xi):
+        ...         c, s = np.cos(xi[0]), np.sin(xi[0])
+        ...         return [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
+        ...
+        >>> sepcal.Triad(sepcal.triads.FieldInBody(), Turned()).nonlinear
+        [('psi', 'rad', -0.5, 0.5)]
+    """
 
     nonlinear: Table
 
@@ -58,37 +81,69 @@ class _InBody:
 
 
 class FieldInBody(_InBody):
-    """The true field in body axes, as a magnetometer sees it."""
+    """The true field in body axes, as a magnetometer sees it.
+
+    Example:
+        >>> compass = sepcal.Triad(sepcal.triads.FieldInBody(), sepcal.triads.CrossCoupling())
+        >>> [name for name, _ in compass.outputs]
+        ['mx', 'my', 'mz']
+    """
 
     inputs: Table = (("hx", "uT"), ("hy", "uT"), ("hz", "uT"))
     outputs: Table = (("mx", "uT"), ("my", "uT"), ("mz", "uT"))
 
 
 class SpecificForceInBody(_InBody):
-    """The true specific force in body axes; at rest and level fz is -9.81 m/s^2."""
+    """The true specific force in body axes; at rest and level fz is -9.81 m/s^2.
+
+    Example:
+        >>> unit = sepcal.Triad(sepcal.triads.SpecificForceInBody(), sepcal.triads.Misalignment())
+        >>> [name for name, _ in unit.outputs]
+        ['ax', 'ay', 'az']
+    """
 
     inputs: Table = (("fx", "m/s^2"), ("fy", "m/s^2"), ("fz", "m/s^2"))
     outputs: Table = (("ax", "m/s^2"), ("ay", "m/s^2"), ("az", "m/s^2"))
 
 
 class Misalignment:
-    """C_eta = I + [eta x]: small angles from the reference's axes to the sensor's (Eq. A2)."""
+    """C_eta = I + [eta x]: small angles from the reference's axes to the sensor's (Eq. A2).
+
+    Example:
+        >>> [name for name, *_ in sepcal.triads.Misalignment().nonlinear]
+        ['eta_x', 'eta_y', 'eta_z']
+    """
 
     nonlinear: Table = tuple((f"eta_{axis}", "rad", -0.5, 0.5) for axis in "xyz")
 
     def matrix(self, eta: Array) -> Array:
-        """I + [eta x]."""
+        """I + [eta x].
+
+        Example:
+            >>> sepcal.triads.Misalignment().matrix([0.0, 0.0, 0.1])[0].tolist()
+            [1.0, -0.1, 0.0]
+        """
         x, y, z = eta
         return np.array([[1.0, -z, y], [z, 1.0, -x], [-y, x, 1.0]])
 
 
 class CrossCoupling:
-    """C_alpha, symmetric with a unit diagonal: soft iron, or axes that are not at right angles."""
+    """C_alpha, symmetric with a unit diagonal: soft iron, or axes that are not at right angles.
+
+    Example:
+        >>> [name for name, *_ in sepcal.triads.CrossCoupling().nonlinear]
+        ['alpha_xy', 'alpha_xz', 'alpha_yz']
+    """
 
     nonlinear: Table = tuple((f"alpha_{axes}", "1", -0.5, 0.5) for axes in ("xy", "xz", "yz"))
 
     def matrix(self, alpha: Array) -> Array:
-        """Ones on the diagonal, alpha beside it."""
+        """Ones on the diagonal, alpha beside it.
+
+        Example:
+            >>> sepcal.triads.CrossCoupling().matrix([0.1, 0.0, 0.0]).tolist()
+            [[1.0, 0.1, 0.0], [0.1, 1.0, 0.0], [0.0, 0.0, 1.0]]
+        """
         xy, xz, yz = alpha
         return np.array([[1.0, xy, xz], [xy, 1.0, yz], [xz, yz, 1.0]])
 
@@ -140,7 +195,15 @@ class Triad:
         self._splits = np.cumsum([len(table) for table in tables])[:-1]
 
     def at(self, u: Any, xi2: Array) -> tuple[Array, Array]:  # noqa: ANN401
-        """A (N, 3, 6) and b (N, 3): [N diag(f) | I] and N f."""
+        """A (N, 3, 6) and b (N, 3): [N diag(f) | I] and N f.
+
+        Example:
+            >>> compass = sepcal.Triad(sepcal.triads.FieldInBody(), sepcal.triads.Misalignment())
+            >>> field = {"hx": [20.0], "hy": [0.0], "hz": [40.0]}
+            >>> A, b = sepcal.OwnModel(compass).evaluate(field, [0.0] * 3)
+            >>> b.tolist()  # a perfect sensor reads the field
+            [[20.0, 0.0, 40.0]]
+        """
         of_reference, *of_factors = np.split(xi2, self._splits)
         f = to_matrix(f"{type(self.reference).__name__}.at()", self.reference.at(u, of_reference))
         if f.shape[1] != 3:

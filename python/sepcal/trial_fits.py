@@ -23,7 +23,20 @@ from sepcal.plots import Backend, Theme
 @checked
 @dataclass(frozen=True, eq=False)
 class TrialFits:
-    """The fits of K trials."""
+    """The fits of K trials.
+
+    Example:
+        >>> class Line:
+        ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+        ...     linear, nonlinear = {"k": "1"}, {}
+        ...     def at(self, u, xi2):
+        ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+        ...
+        >>> v = np.linspace(10.0, 20.0, 50)
+        >>> fits = sepcal.fit_trials(Line(), {"v": v}, {"z": [2.0 * v, 3.0 * v]})
+        >>> fits.names, fits.statuses
+        (('k',), ('converged', 'converged'))
+    """
 
     names: tuple[str, ...]  # n parameters, linear, then nonlinear
     estimates: Array  # (K, n); NaN where a trial could not be fitted
@@ -48,6 +61,18 @@ class TrialFits:
 
         Raises:
             Error: Another word for one of these; the library is not installed.
+
+        Example:
+            >>> class Line:
+            ...     inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+            ...     linear, nonlinear = {"k": "1"}, {}
+            ...     def at(self, u, xi2):
+            ...         return u.v[:, None, None], np.zeros((len(u.v), 1))
+            ...
+            >>> v = np.linspace(10.0, 20.0, 50)
+            >>> z = 2.0 * v + np.random.default_rng(1).normal(size=(20, 50))
+            >>> fits = sepcal.fit_trials(Line(), {"v": v}, {"z": z})
+            >>> drawn = fits.plot(backend="matplotlib")
         """
         from sepcal.plotting import as_figure
         from sepcal.plotting.of_studies import picture_trials

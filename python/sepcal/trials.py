@@ -45,7 +45,15 @@ IMPORT = uuid.uuid4().hex  # with the process's number, which a fork changes, it
 
 @dataclass(frozen=True, eq=False)
 class Estimates:
-    """What a study keeps of a fit."""
+    """What a study keeps of a fit.
+
+    Example:
+        >>> eta, truth = np.linspace(-3.0, 3.0, 40), {"a": 0.3, "c": 1.0, "b": 0.2}
+        >>> trial = sepcal.DesignTrial(sepcal.ScalarExample1(), {"eta": eta}, truth, 0.1, samples=0)
+        >>> study = sepcal.monte_carlo(trial, 2, seed=1, progress=False)
+        >>> study.values[0].names, study.values[0].degrees_of_freedom
+        (('a', 'c', 'b'), 37)
+    """
 
     names: tuple[str, ...]  # n parameters
     values: Array  # (n,)
@@ -57,7 +65,16 @@ class Estimates:
 
     @classmethod
     def of_fit(cls, fit: Fit, truth: Mapping[str, float] | None = None) -> Estimates:
-        """The fit without covariance and samples."""
+        """The fit without covariance and samples.
+
+        Example:
+            >>> eta = np.linspace(-3.0, 3.0, 40)
+            >>> z = 1.3 * np.cos(eta + 0.2) + 1.0
+            >>> data = {"eta": eta, "z": z + 0.01 * np.sin(50.0 * eta)}
+            >>> fit = sepcal.fit(sepcal.ScalarExample1(), data)
+            >>> sepcal.Estimates.of_fit(fit).names == fit.names
+            True
+        """
         parameters = fit.parameters.values()
         estimated = sum(not parameter.fixed for parameter in parameters)
         return cls(
@@ -73,7 +90,13 @@ class Estimates:
 
 @dataclass(frozen=True)
 class Failure:
-    """How a trial failed."""
+    """How a trial failed.
+
+    Example:
+        >>> study = sepcal.monte_carlo(lambda rng: 1 / 0, 2, progress=False)
+        >>> study.failed[0].failure.type, study.failed[0].failure.message
+        ('ZeroDivisionError', 'division by zero')
+    """
 
     type: str  # of the exception, with its module: "sepcal.Error"
     message: str
@@ -82,7 +105,14 @@ class Failure:
 
 @dataclass(frozen=True, eq=False)
 class TrialRecord:
-    """One trial. Its generator is default_rng(SeedSequence(seed, spawn_key=(index,)))."""
+    """One trial. Its generator is default_rng(SeedSequence(seed, spawn_key=(index,))).
+
+    Example:
+        >>> study = sepcal.monte_carlo(lambda rng: rng.normal(), 3, seed=1, progress=False)
+        >>> record = study.trials[2]
+        >>> record.index, record.rng.normal() == record.value  # the trial anew
+        (2, True)
+    """
 
     index: int
     seed: int  # of the study

@@ -54,6 +54,15 @@ class FitOptions(TypedDict, total=False):
 
     Attributes:
 '''
+OPTIONS_TAIL = '''
+    Example:
+        >>> options: sepcal.FitOptions = {"fix": {"w_d": 0.0}, "samples": 100, "seed": 1}
+        >>> base = sepcal.fit(sepcal.PitotStatic(), sepcal.datasets.load("pitot"), **options)
+        >>> base["w_d"].fixed
+        True
+    """
+
+'''
 
 
 def in_environment(build: Path) -> dict[str, str]:
@@ -84,7 +93,7 @@ def generate_options(build: Path) -> str:
         text = f"{row['name']}: {sentence} [{python.get(row['unset'], row['unset'])}]."
         entries.append(textwrap.fill(text, 100, initial_indent=" " * 8, subsequent_indent=" " * 12))
     members = [f"    {row['name']}: {row['type']} | None" for row in rows]
-    body = "\n".join(entries) + '\n    """\n\n' + "\n".join(members) + "\n"
+    body = "\n".join(entries) + "\n" + OPTIONS_TAIL + "\n".join(members) + "\n"
     return formatted(OPTIONS_HEAD + body, OPTIONS)
 
 

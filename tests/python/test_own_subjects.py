@@ -26,7 +26,7 @@ import sepcal
 from example_models import FILE, models
 from sepcal import _core
 from sepcal.own_commands import EXIT_CODES
-from sepcal.printing import told_work
+from sepcal.progress import show_engine
 
 Array = npt.NDArray[np.float64]
 ROWS = 1500
@@ -559,6 +559,6 @@ def test_what_is_being_done_is_heard() -> None:
 
 def test_long_work_is_told_off_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
     """A line every ten seconds says what is done, and for how long."""
-    with told_work("sepcal fit", every=0.02):
+    with show_engine("sepcal fit", every=0.02):
         time.sleep(0.2)
     assert "sepcal fit: at work, 0 s" in capsys.readouterr().err

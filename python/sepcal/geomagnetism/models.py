@@ -30,6 +30,11 @@ class EarthField:
         latitude, longitude: [deg], north and east positive.
         altitude: Above the sea [m].
         year: The day as a decimal year.
+
+    Example:
+        >>> field = sepcal.earth_field(47.4, 8.5, 400.0, 2025.5)
+        >>> round(field.strength), round(field.inclination)  # uT, deg
+        (48, 64)
     """
 
     north: float

@@ -12,7 +12,8 @@ from sepcal.logs.flights import LoggedFlight, convert, sidecar_of, to_json
 from sepcal.logs.listing import list_recording
 from sepcal.logs.reading import open_log
 from sepcal.logs.recording import MAGNETOMETER
-from sepcal.printing import in_shell, page_of, show, tell, told_progress
+from sepcal.printing import in_shell, page_of, show, tell
+from sepcal.progress import show_steps
 from sepcal.whole_files import refuse_outputs
 
 
@@ -57,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
         if output is None:
             raise Error("nothing to do: -o FLIGHT.csv writes a flight, --list shows what is there")
         refuse_outputs((output, sidecar_of(output)), (arguments.log,))
-    with told_progress("log") as report_progress:
+    with show_steps("sepcal log") as report_progress:
         log = open_log(arguments.log, arguments.cut_off, report_progress)
     if arguments.list:
         contents = list_recording(log)

@@ -8,7 +8,7 @@ import json
 import math
 import os
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -17,9 +17,10 @@ from sepcal.arguments import checked
 from sepcal.flight import Flight, csv_of
 from sepcal.geomagnetism.models import Date
 from sepcal.logs.earth import FieldColumns, find_field
-from sepcal.logs.reading import choose_sensor, open_log, quiet
+from sepcal.logs.reading import choose_sensor, open_log
 from sepcal.logs.recording import MAGNETOMETER, Recording, Sensor
 from sepcal.logs.table import Table, build_table
+from sepcal.progress import show_steps
 from sepcal.whole_files import name_of, write_whole
 
 
@@ -31,6 +32,11 @@ class LoggedFlight(Flight):
         conversion: What was done: the log, the sensor, UTC, the Earth's field, rows that were left
             out, and of each column its source and what was done to it. It is what stands beside
             the CSV file as JSON.
+
+    Example:
+        >>> flight = sepcal.read_log(folder / "flight.ulg")
+        >>> flight.sensor, flight.conversion["rows"] == flight.rows
+        ('mag0', True)
     """
 
     def __init__(self, file: str, sensor: Sensor, table: Table, conversion: dict[str, Any]) -> None:
@@ -42,6 +48,12 @@ class LoggedFlight(Flight):
         """Writes FILE, a CSV that read_csv() and the apps read, and FILE.json, the conversion.
 
         Both appear whole or none does. Raises Error where they can't be written.
+
+        Example:
+            >>> flight = sepcal.read_log(folder / "flight.ulg")
+            >>> flight.save(folder / "mag0.csv")
+            >>> sorted(path.name for path in folder.glob("mag0.csv*"))
+            ['mag0.csv', 'mag0.csv.json']
         """
         target = name_of(file)
         write_whole({target: csv_of(self), sidecar_of(target): to_json(self.conversion)})
@@ -57,7 +69,7 @@ def read_log(
     date: Date | None = None,
     field: bool = True,
     cut_off: bool = False,
-    progress: Callable[[str], None] = quiet,
+    progress: bool | Literal["tqdm"] | Callable[[str], None] | None = None,
 ) -> LoggedFlight:
     """A flight from an autopilot's own log: PX4's ULog or ArduPilot's DataFlash.
 
@@ -74,7 +86,7 @@ def read_log(
             "2026-03-01" or a decimal year.
         field: Whether the Earth's field is filled in where positions are logged.
         cut_off: Whether a log that ends inside a message is taken for what is whole.
-        progress: Called with a few words during long work.
+        progress: As of sepcal.report().
 
     Returns:
         LoggedFlight with columns of shape (rows,): time_s on the log's clock; of a magnetometer
@@ -88,8 +100,14 @@ def read_log(
         Error: No such file or another format, a log cut off, an unknown sensor or one that lacks
             what its calibration needs, no reading from `start` to `end`, positions without a date,
             a day outside the field's models, no pyulog, pymavlink or pygeomag.
+
+    Example:
+        >>> flight = sepcal.read_log(folder / "flight.ulg", "mag0", end=30.0)
+        >>> flight.columns[:4]
+        ('time_s', 'mx_ut', 'my_ut', 'mz_ut')
     """
-    return convert(open_log(name_of(file), cut_off, progress), sensor, start, end, date, field)
+    with show_steps("sepcal log", progress) as told:
+        return convert(open_log(name_of(file), cut_off, told), sensor, start, end, date, field)
 
 
 def convert(

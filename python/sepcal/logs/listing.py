@@ -24,6 +24,11 @@ class LogContents:
     Attributes:
         sensors: Names of those that can be calibrated, "mag0", "pitot0".
         text: The page.
+
+    Example:
+        >>> contents = sepcal.list_log(folder / "flight.ulg")
+        >>> contents.sensors
+        ('mag0', 'pitot0')
     """
 
     sensors: tuple[str, ...]
@@ -31,7 +36,12 @@ class LogContents:
     _told: dict[str, Any]
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary; times in s on the log's clock, rates in Hz."""
+        """The same as a dictionary; times in s on the log's clock, rates in Hz.
+
+        Example:
+            >>> sepcal.list_log(folder / "flight.ulg").to_dict()["format"]
+            'ULog'
+        """
         return self._told
 
     def __str__(self) -> str:
@@ -48,6 +58,10 @@ def list_log(file: str | os.PathLike[str], *, cut_off: bool = False) -> LogConte
 
     Raises:
         Error: As read_log() for a file that can't be read.
+
+    Example:
+        >>> sepcal.list_log(folder / "flight.ulg").sensors
+        ('mag0', 'pitot0')
     """
     return list_recording(open_log(name_of(file), cut_off))
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sepcal import _core
 from sepcal.reading.wanted import AIR, MAGNETIC, reading_for
 
-__all__ = ["AIR", "MAGNETIC", "read_file", "read_foreign", "reading_for"]
+__all__ = ["AIR", "MAGNETIC", "is_text", "read_file", "read_foreign", "reading_for"]
 
 
 def read_file(
@@ -25,10 +25,28 @@ def read_file(
 
     Raises:
         Error: No such file, no table, one that is damaged or too large, a missing library.
+
+    Example:
+        >>> sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [1.0, 2.0]}).to_csv(folder / "log.csv")
+        >>> sepcal.reading.read_file(str(folder / "log.csv")).rows
+        2
     """
     from sepcal.reading.files import read
 
     return read(file, table, delimiter, decimal)
+
+
+def is_text(file: str) -> bool:
+    """Whether a file is a table as text, of which delimiter and decimal mark can be said.
+
+    Example:
+        >>> sepcal.Flight({"time_s": [0.0, 0.1], "dp_pa": [1.0, 2.0]}).to_csv(folder / "log.csv")
+        >>> sepcal.reading.is_text(str(folder / "log.csv"))
+        True
+    """
+    from sepcal.reading import files
+
+    return files.is_text(file)
 
 
 def read_foreign(file: str, form: str) -> _core.Flight:

@@ -32,17 +32,22 @@ HAS_TABLES = ("hdf5", "matlab", "mcap", "autopilot", "excel")
 CHUNK = 2**20
 
 
+def is_text(file: str) -> bool:
+    """Whether a file is a table as text, also one that isn't there."""
+    place, _ = _part(file)
+    return not os.path.isfile(place) or find_form(place) == TABLE
+
+
 def read(file: str, table: str | None, delimiter: str, decimal: str) -> _core.Flight:
     """sepcal.reading.read_file()."""
     place, chosen = _part(file)
-    form = find_form(place) if os.path.isfile(place) else TABLE
-    if form == TABLE:
+    if is_text(file):
         if table is not None or chosen is not None:
             raise _core.Error(f"{place}: it is one table as text; leave '{table or chosen}' out")
         return _core.read_csv(place, delimiter, decimal)
     if delimiter or decimal:
         raise _core.Error(f"{place}: it is no table as text; leave delimiter and decimal out")
-    return _read(file, place, form, table if table is not None else chosen)
+    return _read(file, place, find_form(place), table if table is not None else chosen)
 
 
 def read_other(file: str, form: str) -> _core.Flight:

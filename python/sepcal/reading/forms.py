@@ -30,12 +30,17 @@ MAGICS = {
 }
 HDF5_BLOCKS = (512, 1024, 2048)  # where HDF5 may begin behind a block of the user's
 IGC = re.compile(rb"\A(?:\xef\xbb\xbf)?A[A-Z0-9]{3}.*?[\r\n](?:.*[\r\n])*?(?:HFDTE|B\d{6})", re.M)
+CLASSIC = "netCDF of the classic form; write it as netCDF-4: nccopy -k netCDF-4 OLD.nc NEW.nc"
+MATLAB_4 = "a .mat file of MATLAB 4; load it and save it anew: save('log.mat', '-v7')"
 OTHERS = {
     OLE: "an old Excel file (.xls); save it as .xlsx or CSV",
     b"SQLite format 3": "an SQLite database; write the table as CSV or Parquet",
     b"FEA1": "Feather of version 1; write it anew, which makes version 2",
     b"Obj\x01": "Avro; write it as Parquet or CSV",
     b"ORC": "ORC; write it as Parquet or CSV",
+    b"CDF\x01": CLASSIC,
+    b"CDF\x02": CLASSIC,
+    b"CDF\x05": CLASSIC,
     b"#ROSBAG V2.0": "a bag of ROS 1; write its topics as CSV",
     b"%PDF": "a PDF; give the table that it shows",
     b"\x89PNG": "a picture",
@@ -57,17 +62,26 @@ def find_form(file: str) -> str:
     for magic, form in MAGICS.items():
         if start.startswith(magic):
             return form
-    for magic, what in OTHERS.items():
-        if start.startswith(magic):
-            raise _core.Error(f"{file}: {what}")
+    _refuse_others(file, start)
     if start.startswith(ZIP):
         return _of_zip(file)
     if start.startswith(GZIP):
-        inner = _form_of_text_or_magic(_unpacked_start(file))
+        unpacked = _unpacked_start(file)
+        _refuse_others(file, unpacked)
+        inner = _form_of_text_or_magic(unpacked)
         return TABLE if inner in (TABLE, "") else "gzip"
     if any(start[at:].startswith(hdf5.MAGIC) for at in HDF5_BLOCKS):
         return "hdf5"
     return _form_of_text_or_magic(start) or TABLE
+
+
+def _refuse_others(file: str, start: bytes) -> None:
+    """Raises Error for a form that is known and not read."""
+    for magic, what in OTHERS.items():
+        if start.startswith(magic):
+            raise _core.Error(f"{file}: {what}")
+    if matlab.looks_like_version_4(start):
+        raise _core.Error(f"{file}: {MATLAB_4}")
 
 
 def _form_of_text_or_magic(start: bytes) -> str:
@@ -109,4 +123,9 @@ def _of_zip(file: str) -> str:
         raise _core.Error(f"{file}: a binary workbook (.xlsb); save it as .xlsx or CSV")
     if "content.xml" in names:
         raise _core.Error(f"{file}: an OpenDocument file; save the sheet as .xlsx or CSV")
+    if any(name.endswith(".npy") for name in names):
+        raise _core.Error(
+            f"{file}: arrays of NumPy; in Python they are a table: "
+            "sepcal.read(dict(numpy.load('log.npz')))"
+        )
     raise _core.Error(f"{file}: an archive; unpack it and give the log that is in it")

@@ -15,7 +15,7 @@ from sepcal.reading.extras import load
 from sepcal.reading.limits import Budget
 from sepcal.reading.pandas_hdf import pandas_frame, pandas_table
 from sepcal.reading.rates import join_tables
-from sepcal.reading.table import Table
+from sepcal.reading.table import Table, listed
 from sepcal.reading.trees import Tree, tables_in
 from sepcal.reading.units import with_unit
 
@@ -31,12 +31,22 @@ def read(file: str, chosen: str | None) -> Table:
     h5py = load("h5py", file, "HDF5")
     try:
         with h5py.File(file, "r") as opened:
-            tree = Reader(file, h5py).tree_of(opened)
+            reader = Reader(file, h5py)
+            tables = tables_in(reader.tree_of(opened))
     except _core.Error:
         raise
     except Exception as error:  # what h5py raises of damage is of any kind
         raise _core.Error(f"{file}: the HDF5 file is damaged or cut off: {error}") from error
-    return join_tables(file, tables_in(tree), chosen)
+    left_out = f"left out, for h5py can't read their type: {listed(reader.unread)}"
+    if reader.unread and not tables:
+        raise _core.Error(
+            f"{file}: no table is in it that can be read; {left_out}; write numbers and times as "
+            "float64"
+        )
+    table = join_tables(file, tables, chosen)
+    if reader.unread:
+        table.notes.append(left_out)
+    return table
 
 
 class Reader:
@@ -44,6 +54,7 @@ class Reader:
 
     def __init__(self, file: str, h5py: Any) -> None:  # noqa: ANN401
         self.h5py = h5py
+        self.unread: list[str] = []  # datasets of a type that h5py doesn't know
         self._file, self._budget, self._left = file, Budget(file), MOST_NODES
 
     def tree_of(self, group: Any, depth: int = 0) -> Tree:  # noqa: ANN401
@@ -83,7 +94,12 @@ class Reader:
             return None
         if dataset.is_virtual or dataset.external or dataset.ndim > 2:
             return None
-        kind = dataset.dtype
+        try:
+            kind = dataset.dtype
+        except (TypeError, ValueError):  # HDF5's own time, numbers longer than 8 bytes
+            self.unread.append(dataset.name)
+            return None
+        self._check_packing(dataset)
         size = int(np.prod(dataset.shape, dtype=object)) * max(kind.itemsize, 8)
         self._budget.take(size, f"'{dataset.name}'")
         if kind.kind == "O":
@@ -91,6 +107,18 @@ class Reader:
                 return None
             return np.asarray(dataset.asstr(errors="replace")[()], dtype=object)
         return _as_numbers(dataset, np.asarray(dataset[()])) if kind.kind in "fiubSV" else None
+
+    def _check_packing(self, dataset: Any) -> None:  # noqa: ANN401
+        """Raises Error for a filter that h5py doesn't bring, as Blosc of PyTables."""
+        made = dataset.id.get_create_plist()
+        for at in range(made.get_nfilters()):
+            code, _, _, name = made.get_filter(at)
+            if not self.h5py.h5z.filter_avail(code):
+                called = name.decode("utf-8", "replace") or str(code)
+                raise _core.Error(
+                    f"{self._file}: '{dataset.name}' is packed by '{called}', which h5py can't "
+                    "unpack; pack it by zlib: ptrepack --complib=zlib --complevel=1 OLD.h5 NEW.h5"
+                )
 
 
 def _unit_of(dataset: Any) -> object:  # noqa: ANN401

@@ -7,7 +7,8 @@ objects of its own (table, timetable, timeseries, datetime) no one else can read
 
 from __future__ import annotations
 
-from typing import Any
+import re
+from typing import Any, Literal
 
 import numpy as np
 
@@ -21,10 +22,30 @@ from sepcal.reading.trees import Tree, tables_in
 
 MAGIC = b"MATLAB 5.0 MAT-file"
 MAGIC_73 = b"MATLAB 7.3 MAT-file"
+ORDERS_4: tuple[tuple[Literal["little", "big"], int], ...] = (("little", 0), ("big", 1000))
+SPARSE_4 = 2  # the last digit of a matrix's kind; 0 numbers, 1 a text
+NAME_4 = re.compile(rb"[A-Za-z]\w*\0")
 INSTEAD = (
     "it holds objects of MATLAB alone (a table, timetable or timeseries); save plain arrays: "
     "s = table2struct(T, 'ToScalar', true); save('log.mat', '-struct', 's')"
 )
+
+
+def looks_like_version_4(start: bytes) -> bool:
+    """Whether a file begins as those of version 4 do, which have no magic number.
+
+    Five integers: the kind of the first matrix, its sizes, whether it is complex, its name's length
+    with the NUL behind it; then the name.
+    """
+    name = NAME_4.match(start[20:])
+    for order, machine in ORDERS_4:
+        kind, _, _, is_complex, length = (
+            int.from_bytes(start[at : at + 4], order) for at in range(0, 20, 4)
+        )
+        is_kind = machine <= kind < machine + 60 and kind % 10 <= SPARSE_4
+        if is_kind and is_complex in (0, 1) and name is not None and len(name.group()) == length:
+            return True
+    return False
 
 
 def read(file: str, chosen: str | None) -> Table:

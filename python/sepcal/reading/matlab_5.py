@@ -90,13 +90,13 @@ class _Reader:
     def unpack(self, data: bytes) -> tuple[int, bytes]:
         """The one element that is packed, without its tag."""
         unpacker, parts = zlib.decompressobj(), []
-        while data:
+        while not unpacker.eof:
             part = unpacker.decompress(data, CHUNK)
             self.budget.take(len(part), "a variable")
             parts.append(part)
             data = unpacker.unconsumed_tail
             if not part and not data:
-                break
+                raise Damaged("a packed variable has no end")
         whole = b"".join(parts)
         kind, size = self.tag_of(whole[:8])
         if len(whole) < 8 + size:

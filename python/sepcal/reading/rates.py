@@ -147,8 +147,9 @@ def _bring_table(table: Table, joined: Table, base: Table) -> bool:
 
 
 def _put(joined: Table, table: Table, columns: dict[str, Array]) -> None:
+    group = table.name.strip("/") or "root"
     for header, values in columns.items():
-        free = header if header not in joined.columns else f"{table.name.strip('/')}.{header}"
+        free = header if header not in joined.columns else f"{group}.{header}"
         joined.columns[free] = values
 
 

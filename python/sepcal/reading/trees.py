@@ -19,6 +19,7 @@ from sepcal.reading.table import Table
 Tree: TypeAlias = "Mapping[str, np.ndarray | Tree]"
 MOST_WIDE = 64  # columns of an array (N, k)
 FEWEST_ROWS = 2
+ROOT = "/"  # the name of a table outside of all groups
 NAMES_OF = ("_label", "_labels", "_names", "_columns", "_headers")
 
 
@@ -44,7 +45,7 @@ def _of_one_group(columns: Mapping[str, np.ndarray], path: str) -> list[Table]:
             continue
         for header, column in _columns_of(name, values, columns):
             if len(column) >= FEWEST_ROWS:
-                by_rows.setdefault(len(column), Table(name=path)).add(header, column)
+                by_rows.setdefault(len(column), Table(name=path or ROOT)).add(header, column)
     tables = [table for table in by_rows.values() if table.rows]
     if len(tables) > 1:
         for table in tables:

@@ -18,7 +18,16 @@ def wanted() -> str:
 
 @contextmanager
 def reading_for(kind: str) -> Iterator[None]:
-    """Files that are read inside are read for this kind: MAGNETIC, AIR or "" (unknown)."""
+    """Files that are read inside are read for this kind: MAGNETIC, AIR or "" (unknown).
+
+    Example:
+        >>> from sepcal.reading import MAGNETIC, read_file, reading_for
+        >>> with reading_for(MAGNETIC):
+        ...     flight = read_file(str(folder / "flight.ulg"))
+        ...
+        >>> "mx_ut" in flight.headers
+        True
+    """
     token = _kind.set(kind)
     try:
         yield

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 from sepcal import _core
 from sepcal.aircraft_fits import AircraftFit
 from sepcal.arguments import checked
 from sepcal.calibration import Calibration
 from sepcal.diagnosis import Diagnosis
-from sepcal.flight import AnyFlight, to_flight
+from sepcal.flight import AnyFlight, to_flight_of
+from sepcal.progress import show_steps
 from sepcal.reporting.gather import gather
 from sepcal.reporting.page import build_page, read_plotly
 from sepcal.reporting.sections import compose
@@ -34,7 +35,7 @@ def report(
     diagnosis: Diagnosis | None = None,
     files: Sequence[Path] = (),
     process_noise: Mapping[str, float] | None = None,
-    progress: Callable[[str], None] | None = None,
+    progress: bool | Literal["tqdm"] | Callable[[str], None] | None = None,
 ) -> None:
     """Writes the report of a chain of calibrations, or of fits of an aircraft, to one HTML page.
 
@@ -50,7 +51,8 @@ def report(
         files: The calibrations' files, for the command that makes the page again.
         process_noise: Of a flight path or an aircraft, as of AircraftFit.smooth(): with it the page
             has the states with their bands, the innovations and the smoothed noise.
-        progress: Is told what is being done, a few words a step.
+        progress: A line on standard error that says what is being done, None: where that is a
+            terminal, and in a notebook; "tqdm": that of tqdm.auto; or a function of a few words.
 
     Raises:
         Error: No calibration, several models, no flight, bad input as in Calibration.compare(),
@@ -77,12 +79,13 @@ def report(
         raise _core.Error("process_noise is for models with a state: a flight path, an aircraft")
     plotly = read_plotly()
     if flight is not None:
-        flight = to_flight(flight, "report(..., flight=", getattr(chain[-1].core, "model", ""))
-    told, target = progress or (lambda _: None), name_of(file)
-    names = [name_of(at) for at in files]
-    if kinds == {AircraftFit}:
-        page = compose_flown(gather_flown(chain, flight, names, process_noise or {}, told), target)
-    else:
-        page = compose(gather(chain, flight, diagnosis, names, told), target)
-    told("drawing")
-    write_whole({target: build_page(page, plotly)})
+        flight = to_flight_of(chain[-1].core, flight, "report(..., flight=")
+    target, names = name_of(file), [name_of(at) for at in files]
+    with show_steps("sepcal report", progress) as told:
+        if kinds == {AircraftFit}:
+            flown = gather_flown(chain, flight, names, process_noise or {}, told)
+            page = compose_flown(flown, target)
+        else:
+            page = compose(gather(chain, flight, diagnosis, names, told), target)
+        told("drawing")
+        write_whole({target: build_page(page, plotly)})

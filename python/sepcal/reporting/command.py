@@ -7,9 +7,9 @@ import argparse
 
 from sepcal._core import Error
 from sepcal.calibration import Calibration, load
-from sepcal.flight import read_csv
+from sepcal.flight import to_flight, to_flight_of
 from sepcal.own_commands import add_model, read_model, read_numbers
-from sepcal.printing import in_line, show, told_progress
+from sepcal.printing import in_line, show
 from sepcal.reporting import report
 from sepcal.whole_files import refuse_outputs
 
@@ -45,6 +45,20 @@ def add_to(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> Non
         help="of a flight path or an aircraft: root of the spectral density of a noise that drives "
         "the states; the page then has smoothed states, innovations and noise; may be repeated",
     )
+    parser.add_argument(
+        "--delimiter",
+        metavar="MARK",
+        default="",
+        help="what parts the file's columns, where it can be read in two ways: ',', ';', '|', tab "
+        "or space [as the fit was told]",
+    )
+    parser.add_argument(
+        "--decimal",
+        metavar="MARK",
+        default="",
+        help="the file's decimal mark, where it can be read in two ways: '.' or ',' [as the fit "
+        "was told]",
+    )
     add_model(parser, needed=False)
     parser.set_defaults(run=run)
 
@@ -57,22 +71,25 @@ def run(arguments: argparse.Namespace) -> int:
     files = [file for file in arguments.calibrations if file not in more]
     if not files:
         raise Error(f"{more[-1]} is a log, not a calibration; give the JSON that fit wrote with -o")
-    flight = read_csv(arguments.flight)
     model = read_model(arguments.model) if arguments.model else None
     chain = [load(file, model=model) for file in files]
     last = chain[-1]
+    told = {"delimiter": arguments.delimiter, "decimal": arguments.decimal}
+    flights = [
+        to_flight(file, "report(", last.core.model, told)
+        if any(told.values())
+        else to_flight_of(last.core, file, "report(")
+        for file in (arguments.flight, *more)
+    ]
+    flight = flights[0]
     if isinstance(last, Calibration) and (more or last.flights):
-        flight = last.join([flight, *map(read_csv, more)])
-    with told_progress("report") as report_progress:
-        report(
-            chain,
-            arguments.output,
-            flight,
-            files=files,
-            process_noise=read_numbers(
-                "--process-noise", arguments.process_noise, "NAME=SD, az=0.01"
-            ),
-            progress=report_progress,
-        )
+        flight = last.join(flights)
+    report(
+        chain,
+        arguments.output,
+        flight,
+        files=files,
+        process_noise=read_numbers("--process-noise", arguments.process_noise, "NAME=SD, az=0.01"),
+    )
     show(in_line(f"wrote {arguments.output}"))
     return 0

@@ -50,6 +50,13 @@ class Validation:
 
     T trials that both fitted, n parameters, linear, then nonlinear. sepcal begins with its stage
     one, SciPy at the truth.
+
+    Example:
+        >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}
+        >>> truth = {"a": 0.3, "c": 1.0, "b": 0.2}
+        >>> found = sepcal.validate(wave, design, truth=truth, scatter=0.01, trials=3)
+        >>> found.lower, found.largest_difference < 1e-3
+        ((0, 0), True)
     """
 
     model: str
@@ -92,7 +99,15 @@ class Validation:
         return float(known.max()) if known.size else np.nan
 
     def to_dict(self) -> dict[str, Any]:
-        """The table, and what stands about it."""
+        """The table, and what stands about it.
+
+        Example:
+            >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}
+            >>> truth = {"a": 0.3, "c": 1.0, "b": 0.2}
+            >>> found = sepcal.validate(wave, design, truth=truth, scatter=0.01, trials=3)
+            >>> found.to_dict()["trials"]
+            3
+        """
         above, below = self.lower
         return {
             "model": self.model,
@@ -110,7 +125,14 @@ class Validation:
         }
 
     def to_json(self) -> str:
-        """The same as JSON; null where a number is undefined."""
+        """The same as JSON; null where a number is undefined.
+
+        Example:
+            >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}
+            >>> truth = {"a": 0.3, "c": 1.0, "b": 0.2}
+            >>> found = sepcal.validate(wave, design, truth=truth, scatter=0.01, trials=3)
+            >>> _ = (folder / "validation.json").write_text(found.to_json())
+        """
         return json.dumps(self.to_dict(), indent=2)
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -231,6 +253,13 @@ def validate(
     Raises:
         Error: SciPy is missing; an option of another problem; as fit() refuses the design; every
             trial failed, with the reason.
+
+    Example:
+        >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}
+        >>> truth = {"a": 0.3, "c": 1.0, "b": 0.2}
+        >>> found = sepcal.validate(wave, design, truth=truth, scatter=0.01, trials=3)
+        >>> bool(found.same_minimum.all())
+        True
     """
     least_squares()
     given: dict[str, Any] = {**(options or {})}
