@@ -245,7 +245,9 @@ std::string describe_other_minima(const Problem& problem, const std::vector<Loca
       const double value = minima[i].xi2[static_cast<Index>(k)];
       text += (k == 0 ? "" : ", ") + parameters[k].name + " " + base::short_number(value);
     }
-    text += ", where residuals are " + base::short_number(ratio) + " times as large";
+    text += ratio < 1.005
+                ? ", where residuals are as small"
+                : ", where residuals are " + base::short_number(ratio) + " times as large";
   }
   if (more > 0) text += ", and " + std::to_string(more) + " more (see stage_one)";
   return base::one_sentence(text);

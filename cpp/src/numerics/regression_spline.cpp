@@ -75,6 +75,15 @@ bool is_long_enough(const Stretch& stretch, double spacing) {
          EvenSpline(stretch.times, spacing).functions() < stretch.times.size();
 }
 
+/// Of values about their mean.
+double sum_squares(std::span<const double> values) {
+  double mean = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return sum;
+}
+
 }  // namespace
 
 std::vector<double> fit_spline(const Stretch& stretch, double spacing) {
@@ -91,7 +100,7 @@ std::vector<double> fit_spline(const Stretch& stretch, double spacing) {
       for (std::size_t j = i; j < order; ++j) bands[first + i][j - i] += basis[i] * basis[j];
     }
   }
-  constexpr double of_a_sample = 1e-9;  // where no sample lies near a function
+  constexpr double of_a_sample = 1e-12;  // where no sample lies near a function
   for (auto& row : bands) row[0] += of_a_sample;
   const std::vector<double> shares = solve(std::move(bands), std::move(right));
   std::vector<double> fitted(times.size(), level);
@@ -104,6 +113,9 @@ std::vector<double> fit_spline(const Stretch& stretch, double spacing) {
 
 double choose_spacing(const std::vector<Stretch>& stretches, double interval) {
   static constexpr std::array spacings{2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0};
+  constexpr double rounding = 1e-20;  // of squares: what is left is none of noise
+  double size = 0.0;
+  for (const Stretch& stretch : stretches) size += sum_squares(stretch.values);
   double best = infinity;
   double chosen = 0.0;
   for (const double intervals : spacings) {
@@ -122,6 +134,7 @@ double choose_spacing(const std::vector<Stretch>& stretches, double interval) {
       freedom +=
           static_cast<double>(fitted.size() - EvenSpline(stretch.times, spacing).functions());
     }
+    if (!(squares > rounding * size)) return 0.0;
     const double error = rows * squares / (freedom * freedom);
     if (!(error < best)) continue;
     best = error;

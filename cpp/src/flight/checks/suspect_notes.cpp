@@ -88,8 +88,8 @@ void note_spikes(const Log& log, const SuspectColumn& column, const LogChoice& c
                   say_size(column.rows.farthest_spike, column.unit), name_row(log, rows.front()));
   note.effect = say_effect(
       column,
-      heavy ? fmt::format("they are {:.0f} % of all that neighbouring readings differ by, in "
-                          "squares: estimates move and standard errors grow; diagnose and add "
+      heavy ? fmt::format("they make {:.0f} % of the squared differences between neighbouring "
+                          "readings: estimates move and standard errors grow; diagnose and add "
                           "leave them out",
                           100 * share)
             : "each pulls the estimates a little");
@@ -97,22 +97,26 @@ void note_spikes(const Log& log, const SuspectColumn& column, const LogChoice& c
   notes.push_back(std::move(note));
 }
 
-/// Bursts of the same rows in two columns are one: a receiver that was wrong in both.
+/// Whether the note of the same rows of another column is there, which then is of both: a receiver
+/// that was wrong in all that it logs.
+bool joins_another(const LogNote& note, const std::string& header, std::vector<LogNote>& notes) {
+  const auto before = std::ranges::find_if(notes, [&](const LogNote& other) {
+    return other.kind == note.kind && other.rows == note.rows && other.first_s == note.first_s &&
+           other.last_s == note.last_s && other.concern == note.concern;
+  });
+  if (before == notes.end()) return false;
+  before->columns.push_back(header);
+  before->found = list_headers(before->columns) + before->found.substr(before->found.find(':'));
+  return true;
+}
+
 void note_bursts(const Log& log, const SuspectColumn& column, const LogChoice& choice,
                  std::vector<LogNote>& notes) {
   const RowList& rows = column.rows.bursts;
   if (rows.empty()) return;
   const std::size_t count = find_runs_of(rows).size();
   LogNote note = note_on(log, "glitches", Concern::matters, {column.header}, rows);
-  const auto before = std::ranges::find_if(notes, [&](const LogNote& other) {
-    return other.kind == note.kind && other.rows == note.rows && other.first_s == note.first_s &&
-           other.last_s == note.last_s && other.concern == note.concern;
-  });
-  if (before != notes.end()) {
-    before->columns.push_back(column.header);
-    before->found = list_headers(before->columns) + before->found.substr(before->found.find(':'));
-    return;
-  }
+  if (joins_another(note, column.header, notes)) return;
   note.found =
       fmt::format("{}: {} jump away and come back, in {} burst{}, by up to {}, first at {}",
                   column.header, say_rows(rows), count, count == 1 ? "" : "s",
@@ -128,6 +132,10 @@ void note_frozen(const Log& log, const SuspectColumn& column, const LogChoice& c
   const RowList& rows = column.rows.frozen;
   if (rows.empty()) return;
   LogNote note = note_on(log, "frozen", Concern::matters, {column.header}, rows);
+  if (log.flight().find(column.header)->values[rows.front()] == 0.0 &&
+      joins_another(note, column.header, notes)) {
+    return;
+  }
   note.found = fmt::format(
       "{}: {} stand still at {}, where others change, first at {}", column.header, say_rows(rows),
       say_size(log.flight().find(column.header)->values[rows.front()], column.unit),

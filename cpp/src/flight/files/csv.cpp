@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/escaping.hpp"
 #include "flight/files/csv_cells.hpp"
 #include "flight/files/foreign_forms.hpp"
 #include "flight/files/number_text.hpp"
@@ -55,19 +56,32 @@ void CsvReader::read_header() {
   }
   notes_.insert(notes_.end(), form_->notes.begin(), form_->notes.end());
   bool is_foreign_text = false;
+  bool is_windows = true;
   while (lines_->line() + 1 < form_->first_row || lines_->line() == 0) {
     if (form_->first_row == 1) break;
     const auto text = lines_->next();
     if (!text) throw Error(file_ + ": the file is empty; its first line should name the columns");
     is_foreign_text = is_foreign_text || !files::is_utf8(*text);
+    is_windows = is_windows && files::may_be_windows(*text);
     if (form_->header_line != 0 && lines_->line() != form_->header_line) continue;
     line_ = lines_->line();
     const std::string fault = row_->cut(*text, form_->delimiter);
     if (!fault.empty()) fail(line_, fault);
     if (form_->header_line == 0) continue;
-    plain_text_ = form_->is_plain() && !files::is_comment(*text) ? std::string(*text) : "";
+    const bool stays = form_->is_plain() && !files::is_comment(*text) &&
+                       std::ranges::all_of(form_->columns, [](const files::ColumnForm& column) {
+                         return column.header == column.logged;  // no line below gives its unit
+                       });
+    plain_text_ = stays ? std::string(*text) : "";
   }
-  if (is_foreign_text) notes_.emplace_back("the text is not UTF-8: taken for Windows-1252");
+  if (is_foreign_text && is_windows) {
+    notes_.emplace_back("the text is not UTF-8: taken for Windows-1252");
+  } else if (is_foreign_text) {
+    notes_.push_back(
+        fmt::format("the text is neither UTF-8 nor Windows-1252: convert it, as by iconv -f "
+                    "SHIFT_JIS -t UTF-8 {0}, where it is Japanese, or -f GB18030 where Chinese",
+                    base::file_in_shell(file_)));
+  }
   if (plain_text_.empty()) plain_text_ = files::join_cells(header_);
   line_text_ = plain_text_;
 }

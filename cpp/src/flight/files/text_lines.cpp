@@ -57,6 +57,10 @@ bool has_control(std::string_view line) { return (classes_of(line) & control) !=
 
 bool is_utf8(std::string_view text) { return find_invalid_utf8(text) == text.size(); }
 
+bool may_be_windows(std::string_view text) {
+  return text.find_first_of("\x81\x8D\x8F\x90\x9D") == std::string_view::npos;
+}
+
 std::string to_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   // Windows-1252 from 0x80 to 0x9F; what it leaves open is the control of that number.

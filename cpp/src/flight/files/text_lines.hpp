@@ -20,6 +20,9 @@ inline constexpr std::size_t longest_line = std::size_t{1} << 20U;  // more byte
 /// Whether a line has bytes that no text has.
 bool has_control(std::string_view line);
 
+/// Whether no byte is one that Windows-1252 leaves open.
+bool may_be_windows(std::string_view text);
+
 /// The text where it is UTF-8; otherwise taken for Windows-1252, the common superset of Latin-1.
 std::string to_utf8(std::string_view text);
 bool is_utf8(std::string_view text);

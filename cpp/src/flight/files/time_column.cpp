@@ -22,10 +22,10 @@ constexpr double day = 86400.0;
 constexpr const char* time_header = "time_s";
 
 bool is_time_word(const std::string& word) {
-  constexpr std::array words{"time",  "timestamp", "t",     "utc",    "datetime", "clock",
-                             "epoch", "date",      "ts",    "stamp",  "datenum",  "elapsed",
-                             "zeit",  "uhrzeit",   "temps", "heure",  "hora",     "tiempo",
-                             "tid",   "tijd",      "tempo", "horaire"};
+  constexpr std::array words{"time",  "timestamp", "t",     "utc",     "datetime",  "clock",
+                             "epoch", "date",      "ts",    "stamp",   "datenum",   "elapsed",
+                             "zeit",  "uhrzeit",   "temps", "heure",   "hora",      "tiempo",
+                             "tid",   "tijd",      "tempo", "horaire", "juliandate"};
   return std::ranges::find(words, word) != words.end();
 }
 

@@ -65,7 +65,8 @@ void name_columns(Flight& flight, std::vector<std::string>& notes) {
   std::vector<std::string> headers;
   for (const Flight::Column& column : flight.columns()) {
     // "temp_c" is a channel's name, by which effects know it.
-    const bool is_channel = column.header.starts_with("temp_");
+    const bool is_channel = column.header.starts_with("temp_") &&
+                            column.header.size() < std::string_view("temp_degc").size();
     if (!is_exact(column.header) && !is_channel) headers.push_back(column.header);
   }
   std::vector<std::string> taken;

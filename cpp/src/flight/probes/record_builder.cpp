@@ -267,7 +267,7 @@ void RecordBuilder::keep_valid() {
     return fmt::format(
         "column '{}' {}, not {}", quantity.column->header,
         files::describe_cell(*quantity.column, row),
-        time ? "a time as a number, from any start, as in 12.34" : "a finite number");
+        time ? "a time in numbers, as 12.34, whose start does not matter" : "a finite number");
   });
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flight/files/csv_cells.hpp"
+#include "flight/files/written_flight.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/csv.hpp"
 
@@ -17,14 +18,12 @@ namespace sepcal::verbs {
 namespace {
 
 /// The header and the rows as plain comma-separated text: of the file where the flight is of a text
-/// table, of its numbers otherwise.
+/// table, of its numbers and labels otherwise.
 class FlightLines {
  public:
   explicit FlightLines(const Flight& flight) : flight_(flight) {
     if (flight.form()) file_.emplace(flight.name(), Progress(), *flight.form());
-    std::vector<std::string> headers;
-    for (const Flight::Column& column : flight.columns()) headers.push_back(column.header);
-    text_ = files::join_cells(headers);
+    text_ = files::written_header(flight);
   }
 
   std::string_view text() { return file_ ? file_->text() : std::string_view(text_); }
@@ -32,12 +31,7 @@ class FlightLines {
   bool next() {
     if (file_) return file_->next();
     if (row_ == flight_.rows()) return false;
-    text_.clear();
-    for (const Flight::Column& column : flight_.columns()) {
-      if (&column != flight_.columns().data()) text_ += ',';
-      files::append_number(text_, column.values[row_]);
-    }
-    ++row_;
+    files::write_row(text_, flight_, row_++);
     return true;
   }
 

@@ -68,7 +68,7 @@ std::string describe_beyond(const Bounds& tried, const Fit& at_bounds, const Fit
         fmt::format("--bounds {}={:.4g},{:.4g}", name, interval.lower, interval.upper));
   }
   if (adopted) {
-    return fmt::format("{}, and was let beyond it, where the fit is regular: the same as {}",
+    return fmt::format("{}, which was widened, and the fit is regular beyond it: the same as {}",
                        fmt::join(ends, ", "), fmt::join(options, " "));
   }
   return fmt::format("{}, beyond which the fit is regular at {}: give {}", fmt::join(ends, ", "),

@@ -213,6 +213,17 @@ TEST_CASE("thousands, and what may be either") {
         "decimal '.'");
   CHECK(numbers_of("a;b\n1,234;2\n", {.decimal = ","}) == Numbers{{1.234, 2.0}});
   CHECK(numbers_of("a;b\n1,234;2\n", {.decimal = "."}) == Numbers{{1234.0, 2.0}});
+  // Files are put together from sources that differ: what a column shows holds for it.
+  CHECK(numbers_of("a;b;c\n0,1;27.65;1.600,0\n0,2;27.69;1.600,5\n") ==
+        Numbers{{0.1, 27.65, 1600.0}, {0.2, 27.69, 1600.5}});
+  CHECK(numbers_of("a;b\n1.5;2.000,5\n") == Numbers{{1.5, 2000.5}});
+  CHECK(refuse("a;b\n1.500;2,5\n") ==
+        "flight.csv: '1.500' is a number with decimals or with thousands: say decimal ',' or "
+        "decimal '.'");
+  CHECK(numbers_of("a;b\n1.500;2,5\n", {.decimal = "."}) == Numbers{{1.5, 2.5}});
+  CHECK(numbers_of("a;b\n1.500;2,5\n", {.decimal = ","}) == Numbers{{1500.0, 2.5}});
+  // What does not stand in threes is no number: 27.65 is not 2765.
+  CHECK(numbers_of("a;b\n1.234,5;2\n27.65;2\n") == Numbers{{1234.5, 2.0}, {{}, 2.0}});
   CHECK(numbers_of("a\n\xE2\x88\x92"
                    "1.5\n2\n") == Numbers{{-1.5}, {2.0}});
 }
@@ -339,6 +350,18 @@ TEST_CASE("time in text") {
         Times{36000.0, 46800.0});
   // A day or a month first: the time of day is enough, midnight included.
   CHECK(seconds("when", {"03/05/2024 23:59:59", "04/05/2024 00:00:01"}) == Times{86399.0, 86401.0});
+  CHECK(seconds("when", {"20240513100000.5", "20240513100001.5"}) == Times{36000.5, 36001.5});
+  CHECK(seconds("t", {"134:10:00:00.25", "134:10:00:00.50"})[1] == 133 * 86400.0 + 36000.5);
+  CHECK(seconds("t", {"10:00:00:250", "10:00:00:500"}) == Times{36000.25, 36000.5});
+  CHECK(seconds("JulianDate", {"2460443.916667", "2460443.916678"})[0] ==
+        doctest::Approx(36000.0).epsilon(1e-5));
+  CHECK(seconds("stamp", {"133592040000000000", "133592040010000000"})[0] == 36000.0);
+  std::vector<std::string> packed;
+  for (int k = 0; k < 12; ++k) packed.push_back(std::to_string(105850 + (k < 10 ? k : k + 40)));
+  CHECK(seconds("t", packed)[9] == 39539.0);   // 10:58:59
+  CHECK(seconds("t", packed)[10] == 39540.0);  // 10:59:00
+  packed[3] = "105860";
+  CHECK(seconds("t", packed)[9] == 105859.0);
   CHECK(seconds("timestamp", {"1714730400.25", "1714730401.25"}) == Times{36000.25, 36001.25});
   CHECK(seconds("timestamp", {"1714730400250", "1714730401250"}) == Times{36000.25, 36001.25});
   CHECK(seconds("t", {"0.0", "0.2", "0.4"}) == Times{0.0, 0.2, 0.4});
