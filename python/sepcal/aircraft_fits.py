@@ -511,9 +511,12 @@ class AircraftFit(Fit):
         report(self, file, flight, **options)
 
     def _units_on(self, flight: Flight) -> dict[str, str]:
-        """Of the parameters, and of the outputs that the flight has."""
+        """Of the parameters and, where the flight has all outputs, of these."""
         known = {name: parameter.unit for name, parameter in self.parameters.items()}
-        outputs = self.core.compare(flight._core).overall
+        try:
+            outputs = self.core.compare(flight._core).overall
+        except _core.Error:  # a filter goes without an output that is not logged
+            return known
         return known | {misfit.output: misfit.unit for misfit in outputs}
 
     def _or_fitted(self, flight: AnyFlight | Sequence[AnyFlight] | None, call: str) -> Flight:

@@ -168,6 +168,10 @@ Tracked track_columns(const Model& model, const py::dict& columns,
   const Released released;
   CalibrationOptions batch = options;
   if (how.method == TrackMethod::rml) batch.fit.method = FitMethod::filter_error;
+  if (how.method != TrackMethod::rml && !process_noise.empty()) {
+    batch.fit.method = FitMethod::filter_error;
+    batch.fit.process_noise = process_noise;
+  }
   const StreamStart begin = start ? start_from_fit(start->fit)
                                   : start_of_rows(model, record, start_rows.value_or(0), batch);
   const std::shared_ptr<const BlockModel> laid = model.along ? model.along(&record) : model.block;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "states/joint_track.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -38,6 +39,12 @@ struct Layout {
 struct Beginning {
   VectorXd s;     // n_x + k
   MatrixXd root;  // U, U'U its covariance
+};
+
+/// Where the start's rows end: its estimates of x at that segment's first row and of what is free,
+/// and the places of these in it.
+struct Batch {
+  std::vector<std::string> names;  // n_x + k; of x empty where no rows have told it
   std::size_t segment = 0;
   std::size_t row = 0;  // the first that is not in the start
 };
@@ -72,37 +79,53 @@ Layout lay_out(const TrajectoryPlan& plan, const StreamStart& start) {
   return layout;
 }
 
-/// The start's estimates and their root: x of the segment in which its rows end, if any, at that
-/// segment's first row; then what is free.
-Beginning begin_at(const TrajectoryPlan& plan, const Layout& layout, const Record& record,
-                   const StreamStart& start) {
-  Beginning begin;
-  std::vector<std::string> names(layout.states.size());  // empty where no batch has fitted x
+Batch batch_of(const TrajectoryPlan& plan, const Layout& layout, const Record& record,
+               const StreamStart& start) {
+  Batch batch{std::vector<std::string>(layout.states.size())};
   if (start.rows > 0) {
-    const Record batch = first_rows(record, start.rows);
-    begin.segment = batch.segments().size() - 1;
-    begin.row = batch.segments().back().last;
-    const TrajectoryPlan begun(plan.model(), &batch, plan.options());
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      names[i] = begun.start_name(layout.states[i], begun.trajectories() - 1);
+    const Record rows = first_rows(record, start.rows);
+    batch.segment = rows.segments().size() - 1;
+    batch.row = rows.segments().back().last;
+    const TrajectoryPlan begun(plan.model(), &rows, plan.options());
+    for (std::size_t i = 0; i < layout.states.size(); ++i) {
+      batch.names[i] = begun.start_name(layout.states[i], begun.trajectories() - 1);
     }
   }
-  for (const int k : layout.free) names.push_back(layout.names[static_cast<std::size_t>(k)]);
+  for (const int k : layout.free) batch.names.push_back(layout.names[static_cast<std::size_t>(k)]);
+  return batch;
+}
+
+/// The start's estimates under these names, and the columns of U that belong to them, U'U the
+/// covariance of what the start has free: zero for what it holds.
+Beginning estimates_of(const StreamStart& start, const std::vector<std::string>& names) {
   const MatrixXd U = covariance_root(start.R);
   const auto n = static_cast<Index>(names.size());
-  MatrixXd rows = MatrixXd::Zero(U.rows(), n);
-  begin.s = VectorXd::Zero(n);
+  Beginning begin{VectorXd::Zero(n), MatrixXd::Zero(U.rows(), n)};
   for (Index i = 0; i < n; ++i) {
     const std::string& name = names[static_cast<std::size_t>(i)];
     if (name.empty()) continue;
     const Index place = place_in(start, name);
     begin.s[i] = start.xi[place];
     const auto at = std::ranges::find(start.free, static_cast<int>(place));
-    if (at != start.free.end()) rows.col(i) = U.col(at - start.free.begin());
+    if (at != start.free.end()) begin.root.col(i) = U.col(at - start.free.begin());
   }
-  begin.root = MatrixXd::Zero(n, n);
-  absorb_rows(begin.root, rows);
   return begin;
+}
+
+VectorXd density_of(const TrajectoryPlan& plan, const StreamStart& start,
+                    const TrackOptions& options) {
+  const std::vector<Variable>& noises = plan.model().noise;
+  const VectorXd given = base::deviations_in_order(noises, options.process_noise, "process noise");
+  const bool of_start = start.process_noise.size() == given.size();
+  if (options.process_noise.empty()) {
+    return of_start ? VectorXd(start.process_noise.cwiseAbs2()) : VectorXd::Zero(given.size());
+  }
+  if (start.rows > 0 && !of_start && given.maxCoeff() > 0.0) {
+    throw Error(
+        "the first rows were fitted as if no noise drove the states, and their standard errors are "
+        "too small: start by filter error (method), with the process noise");
+  }
+  return given.cwiseAbs2();
 }
 
 /// A joint filter on its way along a record.
@@ -115,9 +138,7 @@ class JointStream {
         options_(options),
         layout_(lay_out(plan_, start)),
         xi_(layout_.start),
-        density_(
-            base::deviations_in_order(plan_.model().noise, options.process_noise, "process noise")
-                .cwiseAbs2()),
+        density_(density_of(plan_, start, options)),
         R_(noise_of(plan_.tables().outputs, start, options).cwiseAbs2().asDiagonal()),
         steps_(model.steps(record, xi_)) {
     base::deviations_in_order(plan_.model().states, options.initial_states, "state");
@@ -141,13 +162,58 @@ class JointStream {
  private:
   template <class Form>
   void run_in(const StreamStart& start) {
-    Beginning begin = begin_at(plan_, layout_, record_, start);
-    const Segment& segment = record_.segments()[begin.segment];
-    if (start.rows == 0) begin = restarted(begin.s, begin.root, segment);
+    const Batch batch = batch_of(plan_, layout_, record_, start);
+    const Beginning known = estimates_of(start, batch.names);
+    const Segment& segment = record_.segments()[batch.segment];
+    const Beginning begin = start.rows == 0 ? restarted(known.s, known.root, segment)
+                                            : behind(known, segment.first, batch.row - 1);
     Filter<Dynamic, Form> filter(begin.s, form_of<Form>(begin.root));
-    std::size_t row = segment.first;
-    for (; row + 1 < begin.row; ++row) predict(filter, row);  // what the start has seen
-    follow(filter, begin.segment, row, start.rows > 0);
+    follow(filter, batch.segment, start.rows == 0 ? segment.first : batch.row - 1, start.rows > 0);
+  }
+
+  /// From x at a segment's first row to x at the last row of the start, which these rows have told:
+  /// given what the start estimates, s, a filter knows x, and s moves it by dx/ds along that
+  /// filter's gains. Then x and the parameters are off together,
+  ///   x - x_hat = dx/ds (s - s_hat) + e,  cov e = P of the filter.
+  Beginning behind(const Beginning& known, std::size_t row, std::size_t last) {
+    const Index n = known.s.size();
+    set_parameters(known.s);
+    Filter<Dynamic> filter(known.s.head(n_x()), MatrixXd(MatrixXd::Zero(n_x(), n_x())));
+    MatrixXd slopes = MatrixXd::Identity(n_x(), n);  // dx/ds
+    for (;; ++row) {
+      absorb_known(filter, slopes, row);
+      if (row == last) break;
+      const StateSteps::JointStep step = steps_->advance_jointly(row, filter.x(), density_);
+      const MatrixXd Phi = of_estimated(step.Phi);
+      slopes = (Phi.leftCols(n_x()) * slopes).eval();
+      slopes.rightCols(n - n_x()) += Phi.rightCols(n - n_x());
+      filter.predict(Transition<Dynamic, Dynamic>{step.x, Phi.leftCols(n_x()),
+                                                  MatrixXd::Identity(n_x(), n_x()), step.Q_d});
+    }
+    MatrixXd rows = MatrixXd::Zero(known.root.rows() + n_x(), n);
+    rows.topLeftCorner(known.root.rows(), n_x()) = known.root * slopes.transpose();
+    rows.topRightCorner(known.root.rows(), n - n_x()) = known.root.rightCols(n - n_x());
+    rows.bottomLeftCorner(n_x(), n_x()) = filter.form().root();
+    Beginning begin{known.s, MatrixXd::Zero(n, n)};
+    begin.s.head(n_x()) = filter.x();
+    absorb_rows(begin.root, rows);
+    return begin;
+  }
+
+  /// A row of the start: x moves by its readings, and dx/ds with it.
+  void absorb_known(Filter<Dynamic>& filter, MatrixXd& slopes, std::size_t row) const {
+    const VectorXd z = reading(row);
+    const StateSteps::Reading expected = steps_->read_jointly(row, filter.x());
+    MatrixXd H = of_estimated(expected.H);
+    for (Index j = 0; j < z.size(); ++j) {
+      if (std::isnan(z[j])) H.row(j).setZero();
+    }
+    const MatrixXd PH = filter.covariance() * H.leftCols(n_x()).transpose();
+    const MatrixXd S = H.leftCols(n_x()) * PH + MatrixXd(R_);
+    MatrixXd moved = H.leftCols(n_x()) * slopes;
+    moved.rightCols(slopes.cols() - n_x()) += H.rightCols(slopes.cols() - n_x());
+    filter.update<Dynamic>(z, {expected.z, H.leftCols(n_x())}, R_);
+    slopes -= PH * S.llt().solve(moved);
   }
 
   template <class Form>
@@ -199,6 +265,12 @@ class JointStream {
     return {std::move(s), std::move(U)};
   }
 
+  VectorXd reading(std::size_t row) const {
+    VectorXd z(static_cast<Index>(outputs_.size()));
+    for (Index j = 0; j < z.size(); ++j) z[j] = outputs_[static_cast<std::size_t>(j)][row];
+    return z;
+  }
+
   /// From `row` to the next.
   template <class Form>
   FilterStatus predict(Filter<Dynamic, Form>& filter, std::size_t row) {
@@ -214,8 +286,7 @@ class JointStream {
 
   template <class Form>
   void update(Filter<Dynamic, Form>& filter, std::size_t row) {
-    VectorXd z(static_cast<Index>(outputs_.size()));
-    for (Index j = 0; j < z.size(); ++j) z[j] = outputs_[static_cast<std::size_t>(j)][row];
+    const VectorXd z = reading(row);
     const auto expected = [&](const VectorXd& s) -> Linearisation<Dynamic, Dynamic> {
       set_parameters(s);
       StateSteps::Reading reading = steps_->read_jointly(row, s.head(n_x()));

@@ -115,6 +115,11 @@ StreamStart start_from_rows(const BlockModel& model, const Record& record, std::
                 (fit.message.empty() ? "" : " (" + fit.message + ")"));
   }
   if (options.method == FitMethod::filter_error) {
+    if (fit.status == FitStatus::not_converged) {
+      throw Error("the fit of the first " + std::to_string(rows) +
+                  " rows does not converge: take more of them" +
+                  (fit.message.empty() ? "" : " (" + fit.message + ")"));
+    }
     StreamStart start = start_from_fit(fit);
     start.rows = rows;
     return start;

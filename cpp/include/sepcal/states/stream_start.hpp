@@ -44,7 +44,9 @@ Record first_rows(const Record& record, std::size_t rows);
 
 /// Fits the first `rows` rows: xi, and R out of T = [R q; 0 rho] of the rows [A | D | r] at it,
 /// whitened by their noise, and of the options' priors. An estimated noise allows for the number of
-/// parameters, SSE / (N - n). Throws Error as fit(), and where these rows are too few: none left
+/// parameters, SSE / (N - n). Where noise drives the states the method is filter error, the
+/// options' process noise held: an output error's factor is that of white residuals, and is sure of
+/// what it doesn't know. Throws Error as fit(), and where these rows are too few: none left
 /// to go on with, or parameters that they leave open.
 StreamStart start_from_rows(const BlockModel& model, const Record& record, std::size_t rows,
                             const FitOptions& options = {});

@@ -36,8 +36,9 @@ struct TrackOptions {
   /// Noise standard deviation of every output; empty: the start's. By rml these are held.
   std::map<std::string, double> noise = {};
   /// Of a model with a state: standard deviation by the names and in the units of its table
-  /// `noise`, per sqrt(s); those not named have none. By rml these are held, and those not named
-  /// are estimated, from the start's on.
+  /// `noise`, per sqrt(s); those not named have none, and where none is named they are the start's.
+  /// A start from first rows is then one by filter error. By rml these are held, and those not
+  /// named are estimated, from the start's on.
   std::map<std::string, double> process_noise = {};
   /// Standard deviation of states where a segment begins that no mini-batch has fitted, about the
   /// model's start(u, z); of those not named ten times the largest value that the state has on the

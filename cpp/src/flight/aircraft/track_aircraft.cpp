@@ -28,8 +28,11 @@ StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const Laid
     return start_from_fit(fitted.fit);
   }
   AircraftOptions options = fitted.options;
-  if (how.how.method == TrackMethod::rml) {
+  if (how.how.method == TrackMethod::rml || !how.how.process_noise.empty()) {
     options.calibration.fit.method = FitMethod::filter_error;
+    if (how.how.method != TrackMethod::rml) {
+      options.calibration.fit.process_noise = how.how.process_noise;
+    }
   }
   if (!how.how.noise.empty()) options.calibration.fit.noise = how.how.noise;
   if (laid.initial_states.empty()) {
