@@ -302,3 +302,24 @@ def test_recorded_logs_have_no_fault(
     checked = run(app, "check", find_fixture(name), "--json", *options, folder=tmp_path).result
     kinds = {"sentinels", "glitches", "frozen"}
     assert [note["found"] for note in checked["notes"] if note["kind"] in kinds] == []
+
+
+@pytest.mark.parametrize("rows", [5, 25, 200])
+@pytest.mark.parametrize("first", [0, 700])
+def test_a_receiver_without_a_fix_is_named_and_left_out(
+    tmp_path: Path, first: int, rows: int
+) -> None:
+    """Zeros in all of the velocity while the tube reads flow: the way out gives the scale."""
+    columns = fly(shear=0)
+    lost = np.arange(first, first + rows)
+    for name in ("vn_mps", "ve_mps"):
+        columns[name][lost] = 0
+    write(columns, tmp_path / "flight.csv")
+    notes = tube(tmp_path, "check", "flight.csv", "--json", *TUBE).result["notes"]
+    (note,) = [note for note in notes if note["kind"] in ("frozen", "glitches")]
+    assert note["columns"][:2] == ["vn_mps", "ve_mps"]
+    assert note["rows"] == rows
+    condition = note["advice"].split('--where "')[1].split('"')[0]
+    fitted = tube(tmp_path, "fit", "flight.csv", "--json", "--where", condition, *TUBE)
+    scale = fitted.result["parameters"]["s_va"]
+    assert abs(scale["value"] - 0.95) < 4 * scale["standard_error"]

@@ -73,6 +73,24 @@ bool is_velocity(std::string_view quantity) {
   return quantity == "vn" || quantity == "ve" || quantity == "vd";
 }
 
+/// Whether the air tells that the vehicle stands in these rows.
+bool stands_in_air(const Log& log, std::size_t first, std::size_t last) {
+  struct Least {
+    const char* quantity;
+    double flow;
+  };
+  for (const auto& [quantity, flow] : {Least{"airspeed", 5.0}, Least{"dp", 15.0}}) {  // m/s, Pa
+    const LoggedColumn* const column = log.find(quantity);
+    if (column == nullptr) continue;
+    double largest = 0.0;
+    for (std::size_t row = first; row < last; ++row) {
+      if (std::isfinite(column->values[row])) largest = std::max(largest, column->values[row]);
+    }
+    return largest < flow;
+  }
+  return false;
+}
+
 /// Rows in which a receiver has no fix: all that it logs of the velocity is 0 there, and at once
 /// the vehicle moves, before or after.
 RowList find_without_fix(const Log& log, const std::vector<Segment>& stretches) {
@@ -96,7 +114,7 @@ RowList find_without_fix(const Log& log, const std::vector<Segment>& stretches) 
       while (last < stretch.last && speed(last) == 0.0) ++last;
       const bool moved = first > stretch.first && speed(first - 1) > moves;
       const bool goes_on = last < stretch.last && speed(last) > moves;
-      if (last - first >= fewest && (moved || goes_on)) {
+      if (last - first >= fewest && (moved || goes_on) && !stands_in_air(log, first, last)) {
         for (std::size_t row = first; row < last; ++row) rows.push_back(row);
       }
       first = last;
