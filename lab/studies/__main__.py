@@ -25,6 +25,7 @@ from studies import (
     monte_carlo,
     native,
     paper,
+    starts,
     trajectories,
     trust,
 )
@@ -37,6 +38,7 @@ STUDIES: tuple[Study, ...] = (
     monte_carlo.STUDY,
     effect_coverage.STUDY,
     field_strength.STUDY,
+    starts.STUDY,
     flight_path.STUDY,
     trajectories.STUDY,
     model_structure.STUDY,

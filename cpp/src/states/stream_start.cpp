@@ -48,15 +48,15 @@ StreamStart begin(const Fit& fit) {
   return start;
 }
 
-/// "Cl_rudder, Cn_rudder and 3 more" that the rows don't determine.
-std::string open_in(const Fit& fit) {
+/// Those that the rows don't determine, or leave at a bound.
+std::vector<std::string> open_in(const Fit& fit) {
   std::vector<std::string> names;
   for (const Parameter& parameter : fit.parameters) {
     if (!parameter.fixed && !std::isfinite(parameter.standard_error)) {
       names.push_back(parameter.name);
     }
   }
-  return names.empty() ? "parameters" : base::list_first(names, 6);
+  return names;
 }
 
 void check_rows(const Record& record, std::size_t rows) {
@@ -110,7 +110,9 @@ StreamStart start_from_rows(const BlockModel& model, const Record& record, std::
   const Record batch = first_rows(record, rows);
   const Fit fit = sepcal::fit(model, batch, options);
   if (fit.status == FitStatus::not_identifiable) {
-    throw Error("the first " + std::to_string(rows) + " rows leave " + open_in(fit) +
+    const std::vector<std::string> open = open_in(fit);
+    throw Error("the first " + std::to_string(rows) + " rows leave " +
+                (open.empty() ? "parameters" : base::list_first(open, 6)) +
                 " open: take more of them, hold parameters or give a prior" +
                 (fit.message.empty() ? "" : " (" + fit.message + ")"));
   }
@@ -119,6 +121,10 @@ StreamStart start_from_rows(const BlockModel& model, const Record& record, std::
       throw Error("the fit of the first " + std::to_string(rows) +
                   " rows does not converge: take more of them" +
                   (fit.message.empty() ? "" : " (" + fit.message + ")"));
+    }
+    if (const std::vector<std::string> open = open_in(fit); !open.empty()) {
+      throw Error("the first " + std::to_string(rows) + " rows leave " + base::list_first(open, 6) +
+                  " at a bound or open: take more of them, hold parameters or give a prior");
     }
     StreamStart start = start_from_fit(fit);
     start.rows = rows;
