@@ -57,9 +57,15 @@ class ModelArguments {
     add_model_to(verb);
     verb.add_option("--method", method_,
                     "output-error: states are integrated; filter-error: noise drives them too, and "
-                    "its size is estimated")
+                    "its size is estimated; frequency, of aero: equation error over a band")
         ->type_name("HOW")
         ->capture_default_str();
+    verb.add_option("--band", band_,
+                    "of --method frequency [Hz]; else 0.1:2, what a rigid aircraft does")
+        ->type_name("LOW:HIGH");
+    verb.add_option("--spacing", spacing_,
+                    "of its frequencies [Hz]; else one over the length of a segment")
+        ->type_name("HZ");
     verb.add_option("--hessian", hessian_, "of filter error's standard errors: fisher or observed")
         ->type_name("WHICH")
         ->capture_default_str();
@@ -115,7 +121,10 @@ class ModelArguments {
     options.trajectory.outputs = split_names(outputs_);
     if (shoot_) options.trajectory.shoot = *shoot_;
     options.calibration = std::move(calibration);
-    options.calibration.fit.method = choice_of<FitMethod>("--method", method_);
+    options.band = resolve_band();
+    if (!options.band) {
+      options.calibration.fit.method = choice_of<FitMethod>("--method", method_);
+    }
     options.calibration.fit.hessian = choice_of<Hessian>("--hessian", hessian_);
     if (options.model == AircraftModel::aero &&
         options.calibration.fit.method == FitMethod::filter_error) {
@@ -127,6 +136,28 @@ class ModelArguments {
   }
 
  private:
+  /// None where the fit is in time.
+  std::optional<Band> resolve_band() const {
+    const bool is_over_band = method_ == "frequency";
+    if (!is_over_band && (!band_.empty() || spacing_)) {
+      throw Error(fmt::format("{} is of a fit over a band; give --method frequency with it",
+                              band_.empty() ? "--spacing" : "--band"));
+    }
+    if (!is_over_band) return std::nullopt;
+    Band band;
+    if (!band_.empty()) {
+      const std::size_t colon = band_.find(':');
+      if (colon == std::string::npos) {
+        throw Error(fmt::format("--band {}: write LOW:HIGH in Hz, as 0.1:2", band_));
+      }
+      band.low = parse_value("--band", band_.substr(0, colon));
+      band.high = parse_value("--band", band_.substr(colon + 1));
+    }
+    if (spacing_) band.spacing = *spacing_;
+    check_band(band);
+    return band;
+  }
+
   std::string model_ = "aero";
   std::string method_ = std::string(to_string(FitMethod::output_error));
   std::string hessian_ = std::string(to_string(Hessian::fisher));
@@ -135,6 +166,8 @@ class ModelArguments {
   std::string measured_;
   std::string outputs_;
   std::vector<std::string> equations_;
+  std::string band_;
+  std::optional<double> spacing_;
   std::optional<double> shoot_;
   AircraftOptions options_;
 };

@@ -36,6 +36,9 @@ class Aero:
         equations: {coefficient: [regressors]} in their place: {"Cm": ["1", "alpha", "q_hat",
             "elevator", "alpha^2"]}.
         window: Of the local cubic that differentiates p, q and r [s]; 0: seven rows.
+        band: (low, high) of the frequencies over which it is fitted [Hz], (0.1, 2) for what a
+            rigid aircraft does [row by row in time].
+        spacing: Of these frequencies [Hz]; 0: one over the length of a segment.
 
     Example:
         >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
@@ -53,8 +56,11 @@ class Aero:
         *coefficients: str,
         equations: Equations | None = None,
         window: float = 0.0,
+        band: tuple[float, float] | None = None,
+        spacing: float = 0.0,
     ) -> None:
         self.aircraft, self.window = _to_aircraft(aircraft), float(window)
+        self.band = _to_band(band, spacing)
         self.equations = _to_equations(equations)
         for coefficient in coefficients:
             if not isinstance(coefficient, str):
@@ -71,10 +77,14 @@ class Aero:
             "trajectory": to_core_options(complete({})),
             "gravity": 9.80665,
             "window": self.window,
+            "band": self.band,
         }
 
     def __repr__(self) -> str:
-        return f"Aero({self.aircraft!r}, equations={self.equations!r}, window={self.window!r})"
+        over = "" if self.band is None else f", band={self.band[:2]}, spacing={self.band[2]}"
+        return (
+            f"Aero({self.aircraft!r}, equations={self.equations!r}, window={self.window!r}{over})"
+        )
 
 
 @checked
@@ -126,6 +136,7 @@ class RigidAircraft:
             "trajectory": to_core_options(self.options),
             "gravity": self.gravity,
             "window": self.window,
+            "band": None,
         }
 
     def __repr__(self) -> str:
@@ -144,6 +155,16 @@ def _to_aircraft(aircraft: object) -> Aircraft:
         f"a {type(aircraft).__name__} is no aircraft; give sepcal.Aircraft(area=..., chord=..., "
         "span=..., mass=..., inertia=(Ix, Iy, Iz, Ixz)) or sepcal.read_aircraft(FILE)"
     )
+
+
+def _to_band(band: object, spacing: float) -> tuple[float, float, float] | None:
+    if band is None:
+        if spacing:
+            raise _core.Error("spacing is of the frequencies of a band; give band=(0.1, 2) with it")
+        return None
+    if not isinstance(band, tuple | list) or len(band) != 2:
+        raise _core.Error(f"band is {band!r}; give (low, high) in Hz, (0.1, 2)")
+    return float(band[0]), float(band[1]), float(spacing)
 
 
 def _to_equations(equations: Equations | None) -> dict[str, list[str]]:

@@ -51,6 +51,17 @@ AircraftFit describe(const Flight& flight, AircraftOptions options, Fit fit) {
           .fit = std::move(fit)};
 }
 
+/// Throws Error for a band of what is fitted row by row.
+void check_domain(const AircraftOptions& options) {
+  if (!options.band) return;
+  check_band(*options.band);
+  if (options.model == AircraftModel::aero) return;
+  throw Error(
+      fmt::format("the model '{}' is fitted in time; over a band of frequencies aero is "
+                  "fitted: leave the band out, or choose aero",
+                  to_string(options.model)));
+}
+
 }  // namespace
 
 std::string_view to_string(AircraftModel model) {
@@ -69,6 +80,7 @@ AircraftModel find_aircraft_model(std::string_view name) {
 }
 
 std::string_view method_of(const AircraftFit& fitted) {
+  if (fitted.options.band) return "frequency-equation-error";
   if (fitted.options.model == AircraftModel::aero) return "equation-error";
   return to_string(fitted.options.calibration.fit.method);
 }
@@ -96,6 +108,7 @@ AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
     throw OptionError(
         {Option{"free"}, ": equation error holds nothing that could be freed; leave it out"});
   }
+  check_domain(options);
   LaidAircraft laid = lay(flight, options);
   AircraftFit fitted = describe(flight, options, fit_laid(laid, laid.fit));
   fitted.equations = std::move(laid.equations);
@@ -108,6 +121,7 @@ AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
 
 TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   refuse_splines(options, "the two steps take products of powers alone");
+  if (options.band) throw Error("two steps are fitted in time; leave the band out");
   AircraftOptions second = options;
   second.model = AircraftModel::aero;
   second.calibration.free.clear();

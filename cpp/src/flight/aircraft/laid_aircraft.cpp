@@ -17,6 +17,7 @@
 #include "sepcal/composition.hpp"
 #include "sepcal/detail/aircraft/path.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/frequency/fit_in_band.hpp"
 #include "sepcal/states/stream_start.hpp"
 #include "states/composed_trajectory.hpp"
 
@@ -134,6 +135,7 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
     throw Error("a flight path has no equations; leave them out, or fit a model of the aircraft");
   }
   laid.effects = options.calibration.effects;
+  laid.band = options.band;
   laid.equations = equations_of(options);
   ProbeRecord prepared = prepare(flight, options.model, options.calibration.log);
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
@@ -173,6 +175,14 @@ std::vector<AeroEquation> equations_of(const AircraftOptions& options) {
   return with_regressors(std::move(equations), options);
 }
 
+void need_rows_in_time(const AircraftFit& fitted, std::string_view what_it_needs) {
+  if (!fitted.options.band) return;
+  throw Error(
+      fmt::format("a fit over a band {}; fit the same equations in time for that, without "
+                  "the band",
+                  what_it_needs));
+}
+
 std::vector<EffectSetting> effects_along(const AircraftOptions& options,
                                          const std::vector<EffectSetting>& effects) {
   std::vector<EffectSetting> along;
@@ -183,6 +193,7 @@ std::vector<EffectSetting> effects_along(const AircraftOptions& options,
 }
 
 Fit fit_laid(LaidAircraft& laid, const FitOptions& options) {
+  if (laid.band) return fit_in_band(*laid.model, laid.record, *laid.band, options);
   if (laid.along.empty()) return fit(*laid.model, laid.record, options);
   return estimation::fit_with_steps(*laid.model, *laid.base, laid.along, laid.effects, laid.record,
                                     options);
