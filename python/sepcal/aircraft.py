@@ -8,6 +8,7 @@ from typing import Any, Literal, Protocol, Unpack
 
 from sepcal import _core
 from sepcal.arguments import checked
+from sepcal.bands import to_band
 from sepcal.geometry import Aircraft
 from sepcal.states_module import states_module
 from sepcal.trajectories import TrajectoryOptions, complete, to_core_options
@@ -99,6 +100,8 @@ class RigidAircraft:
             coefficients that are not named].
         gravity: At the place of the flight [m/s^2].
         window: Of the local cubic that differentiates rates for the start [s]; 0: seven rows.
+        band: (low, high) of the frequencies over which it is fitted [Hz], linear about the flight's
+            means, without biases or initial states [in time].
         **options: TrajectoryOptions; `measured` and `outputs` are the axes' own where left out.
 
     Example:
@@ -119,6 +122,7 @@ class RigidAircraft:
         equations: Equations | None = None,
         gravity: float = 9.80665,
         window: float = 0.0,
+        band: tuple[float, float] | None = None,
         **options: Unpack[TrajectoryOptions],
     ) -> None:
         if axes not in ("longitudinal", "lateral", "six-dof"):
@@ -126,6 +130,7 @@ class RigidAircraft:
         self.aircraft, self.axes = _to_aircraft(aircraft), axes
         self.equations = _to_equations(equations)
         self.gravity, self.window = float(gravity), float(window)
+        self.band = _to_band(band, 0.0)
         self.options = complete(options)
 
     def _aircraft_options(self) -> dict[str, Any]:
@@ -136,11 +141,12 @@ class RigidAircraft:
             "trajectory": to_core_options(self.options),
             "gravity": self.gravity,
             "window": self.window,
-            "band": None,
+            "band": self.band,
         }
 
     def __repr__(self) -> str:
-        return f"RigidAircraft({self.aircraft!r}, {self.axes!r})"
+        over = "" if self.band is None else f", band={self.band[:2]}"
+        return f"RigidAircraft({self.aircraft!r}, {self.axes!r}{over})"
 
 
 def standard_regressors(coefficient: str) -> list[str]:
@@ -162,9 +168,7 @@ def _to_band(band: object, spacing: float) -> tuple[float, float, float] | None:
         if spacing:
             raise _core.Error("spacing is of the frequencies of a band; give band=(0.1, 2) with it")
         return None
-    if not isinstance(band, tuple | list) or len(band) != 2:
-        raise _core.Error(f"band is {band!r}; give (low, high) in Hz, (0.1, 2)")
-    return float(band[0]), float(band[1]), float(spacing)
+    return to_band(band, spacing)
 
 
 def _to_equations(equations: Equations | None) -> dict[str, list[str]]:

@@ -150,7 +150,7 @@ def test_the_program_has_it_too(tmp_path: Path) -> None:
     assert "give --method frequency" in in_time.err
     path = run("fit", "f.csv", "--model", "path", "--method", "frequency")
     assert path.code == 2
-    assert "over a band of frequencies aero is fitted" in path.err
+    assert "a flight path is fitted in time" in path.err
 
 
 def test_what_is_no_band_is_refused() -> None:

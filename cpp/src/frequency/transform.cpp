@@ -48,6 +48,10 @@ std::vector<double> frequencies_of(const Band& band, double seconds) {
   return frequencies;
 }
 
+std::span<const double> time_of(const Record& record, const Segment& segment) {
+  return record.column("time").subspan(segment.first, segment.rows());
+}
+
 double duration_of(std::span<const double> time) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < time.size(); ++k) steps.push_back(time[k] - time[k - 1]);

@@ -46,7 +46,8 @@ struct AircraftOptions {
   TrajectoryOptions trajectory = {};  // of path, where `outputs` are empty: those that are logged
   double gravity = 9.80665;           // m/s^2, at the place of the flight
   double window = 0.0;                // of CoefficientOptions, s
-  /// Of aero: fitted over these frequencies (fit_in_band()) instead of row by row.
+  /// Fitted over these frequencies instead of in time: aero by fit_in_band(), an aircraft by
+  /// fit_output_error_in_band().
   std::optional<Band> band = {};
   /// Of `free`: what a path holds at zero (FlightPath::held_at_zero), or scales and biases of an
   /// aircraft's outputs. Of `effects` the names alone.
@@ -78,7 +79,8 @@ struct AircraftFit {
   std::string file = {};                // that it was read from
 };
 
-/// "output-error", "filter-error"; of aero "equation-error" or "frequency-equation-error".
+/// "output-error", "filter-error"; of aero "equation-error"; over a band
+/// "frequency-output-error", "frequency-equation-error".
 std::string_view method_of(const AircraftFit& fitted);
 
 /// "Cm=1,alpha,q_hat". Throws Error, which says how to write it.

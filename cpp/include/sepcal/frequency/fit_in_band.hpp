@@ -6,8 +6,8 @@
 #pragma once
 
 #include "sepcal/detail/block_model.hpp"
-#include "sepcal/fit.hpp"
 #include "sepcal/detail/frequency/transform.hpp"
+#include "sepcal/fit.hpp"
 #include "sepcal/options.hpp"
 #include "sepcal/record.hpp"
 

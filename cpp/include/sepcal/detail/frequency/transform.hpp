@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "sepcal/record.hpp"
+
 namespace sepcal {
 
 /// Frequencies, Hz. The default band holds what a rigid aircraft does.
@@ -25,6 +27,9 @@ void check_band(const Band& band);
 /// low, low + spacing, ... up to high, of rows that last `seconds`. Throws Error as check_band()
 /// does, for a band that holds less than two such frequencies, and for more than 100,000.
 std::vector<double> frequencies_of(const Band& band, double seconds);
+
+/// The column `time` [s] in a segment's rows.
+std::span<const double> time_of(const Record& record, const Segment& segment);
 
 /// Of N rows: the last less the first time, and a median interval more [s].
 double duration_of(std::span<const double> time);
