@@ -116,7 +116,7 @@ def three_two_one_one(
 
     Example:
         >>> sepcal.three_two_one_one({"elevator_rad": 0.05}, band=(0.3, 0.9)).step
-        0.6
+        0.5
     """
     named = [(name, float(size)) for name, size in amplitudes.items()]
     made = states_module().three_two_one_one(

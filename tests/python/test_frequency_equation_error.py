@@ -47,10 +47,13 @@ def columns_of(flight: sepcal.Flight) -> tuple[Array, Array, Array]:
 
 
 def transform(columns: Array, time: Array, frequencies: Array) -> NDArray[np.complex128]:
-    line = np.column_stack([np.ones_like(time), time - time.mean()])
-    left = columns - line @ np.linalg.lstsq(line, columns, rcond=None)[0]
+    """Of columns, without what is the transform of a straight line."""
     turn = np.exp(-2j * np.pi * np.outer(frequencies, time - (time[0] + time[-1]) / 2))
-    return np.sqrt(2 / len(time)) * turn @ left
+    line = np.column_stack([np.ones_like(time), time - time.mean()])
+    ends, X = (np.sqrt(2 / len(time)) * turn @ of for of in (line, columns))
+    both = np.vstack([ends.real, ends.imag])
+    factors = np.linalg.lstsq(both, np.vstack([X.real, X.imag]), rcond=1e-9)[0]
+    return np.asarray(X - ends @ factors)
 
 
 @pytest.mark.parametrize("spacing", [0.0, 0.01])
@@ -62,7 +65,10 @@ def test_it_is_complex_least_squares(flight: sepcal.Flight, spacing: float) -> N
     T = time[-1] - time[0] + np.median(np.diff(time))
     step = spacing or 1 / T
     frequencies = np.arange(0.15, 1.5 + 1e-9, step)
-    Z, A = transform(Cm, time, frequencies), transform(X[:, 1:], time, frequencies)
+    if not spacing:
+        frequencies = np.arange(np.ceil(0.15 * T - 1e-9), np.floor(1.5 * T + 1e-9) + 1) / T
+    Z = transform(Cm[:, None], time, frequencies)[:, 0]
+    A = transform(X[:, 1:], time, frequencies)
     normal = (A.conj().T @ A).real
     slopes = np.linalg.solve(normal, (A.conj().T @ Z).real)
     expected = [Cm.mean() - X[:, 1:].mean(axis=0) @ slopes, *slopes]

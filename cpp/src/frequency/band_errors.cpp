@@ -184,11 +184,10 @@ class BandErrors {
 }  // namespace
 
 void Grid::add(const std::vector<double>& of_segment, double lasts) {
-  const std::size_t next = segment.empty() ? 0 : segment.back() + 1;
   frequencies.insert(frequencies.end(), of_segment.begin(), of_segment.end());
   seconds.insert(seconds.end(), of_segment.size(), lasts);
-  segment.insert(segment.end(), of_segment.size(), next);
-  total += lasts;
+  segment.insert(segment.end(), of_segment.size(), segments++);
+  if (!of_segment.empty()) total += lasts;
 }
 
 void put_band_errors(const std::vector<BandTangent>& outputs, const Grid& grid,

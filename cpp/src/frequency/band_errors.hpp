@@ -19,9 +19,10 @@ struct Grid {
   std::vector<double> frequencies = {};  // Hz, segment after segment
   std::vector<double> seconds = {};      // how long the segment of each lasts
   std::vector<std::size_t> segment = {};
-  double total = 0.0;  // s, of all segments
+  std::size_t segments = 0;
+  double total = 0.0;  // s, of all segments that have frequencies
 
-  /// Those of the next segment.
+  /// Those of the next segment, none where it is too short.
   void add(const std::vector<double>& of_segment, double lasts);
 };
 

@@ -74,11 +74,13 @@ bool is_constant(const VectorXd& column) {
 }
 
 Grid lay_grid(const Record& record, const Band& band) {
-  Grid grid;
+  std::vector<double> seconds;
   for (const Segment& segment : record.segments()) {
-    const double seconds = duration_of(time_of(record, segment));
-    grid.add(frequencies_of(band, seconds), seconds);
+    seconds.push_back(duration_of(time_of(record, segment)));
   }
+  const auto frequencies = frequencies_of(band, seconds);
+  Grid grid;
+  for (std::size_t s = 0; s < seconds.size(); ++s) grid.add(frequencies[s], seconds[s]);
   return grid;
 }
 
@@ -95,9 +97,16 @@ Spectrum transform(const MatrixXd& rows, const std::vector<bool>& is_held, const
     const auto N = static_cast<Index>(time.size());
     std::size_t end = at;
     while (end < grid.segment.size() && grid.segment[end] == s) ++end;
+    if (end == at) {  // too short for the band
+      offset += N;
+      continue;
+    }
+    const std::span<const double> frequencies = std::span(grid.frequencies).subspan(at, end - at);
+    // Without its line in time first a large trim would leave its rounding.
+    const MatrixXcd X =
+        fourier_transform(without_line(rows.middleRows(offset, N), time), time, frequencies);
     all.middleRows(static_cast<Index>(at), static_cast<Index>(end - at)) =
-        fourier_transform(without_line(rows.middleRows(offset, N), time), time,
-                          std::span(grid.frequencies).subspan(at, end - at));
+        without_ends(X, time, frequencies);
     offset += N;
     at = end;
   }

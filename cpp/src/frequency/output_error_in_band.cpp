@@ -169,16 +169,20 @@ MatrixXd gather(const Record& record, const Segment& segment,
 /// At multiples of one over each segment's length.
 Spectra transform(const StateBlockModel& model, const Record& record, const Band& band, double dt,
                   const std::vector<std::string>& inputs) {
-  constexpr double rounding = 1e-9;
   std::vector<std::string> names = inputs;
   for (const Variable& output : model.tables().outputs) names.push_back(output.name);
   Spectra spectra;
   std::vector<MatrixXcd> parts;
   std::vector<VectorXcd> starts;
+  std::vector<double> lasting;
   for (const Segment& segment : record.segments()) {
-    const double seconds = dt * static_cast<double>(segment.rows());
-    const Band bins{std::ceil(band.low * seconds - rounding) / seconds, band.high, 1.0 / seconds};
-    const std::vector<double> frequencies = frequencies_of(bins, seconds);
+    lasting.push_back(dt * static_cast<double>(segment.rows()));
+  }
+  const auto of_segments = frequencies_of(band, lasting);
+  for (std::size_t s = 0; s < lasting.size(); ++s) {
+    const std::vector<double>& frequencies = of_segments[s];
+    if (frequencies.empty()) continue;  // too short for the band
+    const Segment& segment = record.segments()[s];
     const auto time = time_of(record, segment);
     parts.push_back(fourier_transform(gather(record, segment, names), time, frequencies));
     VectorXcd start(static_cast<Index>(frequencies.size()));
@@ -189,7 +193,7 @@ Spectra transform(const StateBlockModel& model, const Record& record, const Band
           scale * std::polar(1.0, 2.0 * std::numbers::pi * frequencies[m] * before);
     }
     starts.push_back(std::move(start));
-    spectra.grid.add(frequencies, seconds);
+    spectra.grid.add(frequencies, lasting[s]);
     ++spectra.segments;
   }
   const auto count = static_cast<Index>(spectra.grid.frequencies.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/detail/frequency/transform.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,6 +13,23 @@
 namespace sepcal {
 
 using base::short_number;
+
+namespace {
+
+/// first, first + spacing ... first + steps spacing; fewer than none where the band holds none.
+struct Steps {
+  double first, spacing, steps;
+};
+
+Steps steps_of(const Band& band, double seconds) {
+  constexpr double rounding = 1e-9;
+  const double spacing = band.spacing > 0.0 ? band.spacing : 1.0 / seconds;
+  const double first =
+      band.spacing > 0.0 ? band.low : spacing * std::ceil(band.low / spacing - rounding);
+  return {first, spacing, std::floor((band.high - first) / spacing + rounding)};
+}
+
+}  // namespace
 
 void check_band(const Band& band) {
   const bool finite =
@@ -28,10 +46,8 @@ void check_band(const Band& band) {
 
 std::vector<double> frequencies_of(const Band& band, double seconds) {
   check_band(band);
-  constexpr double rounding = 1e-9;
   constexpr double most = 1e5;
-  const double spacing = band.spacing > 0.0 ? band.spacing : 1.0 / seconds;
-  const double steps = std::floor((band.high - band.low) / spacing + rounding);
+  const auto [first, spacing, steps] = steps_of(band, seconds);
   if (!(steps >= 1.0)) {
     throw Error("a band from " + short_number(band.low) + " to " + short_number(band.high) +
                 " Hz holds less than two frequencies " + short_number(spacing) +
@@ -44,8 +60,22 @@ std::vector<double> frequencies_of(const Band& band, double seconds) {
                 " Hz apart; narrow the band, or give a wider spacing");
   }
   std::vector<double> frequencies;
-  for (double k = 0.0; k <= steps; ++k) frequencies.push_back(band.low + k * spacing);
+  for (double k = 0.0; k <= steps; ++k) frequencies.push_back(first + k * spacing);
   return frequencies;
+}
+
+std::vector<std::vector<double>> frequencies_of(const Band& band,
+                                                const std::vector<double>& seconds) {
+  check_band(band);
+  std::vector<std::vector<double>> all(seconds.size());
+  const auto longest = std::ranges::max_element(seconds);
+  for (std::size_t s = 0; s < seconds.size(); ++s) {
+    const bool is_longest = seconds.begin() + static_cast<std::ptrdiff_t>(s) == longest;
+    if (is_longest || steps_of(band, seconds[s]).steps >= 1.0) {
+      all[s] = frequencies_of(band, seconds[s]);
+    }
+  }
+  return all;
 }
 
 std::span<const double> time_of(const Record& record, const Segment& segment) {
@@ -84,6 +114,30 @@ Eigen::MatrixXcd fourier_transform(const Eigen::MatrixXd& columns, std::span<con
     X.row(m).imag() = -scale * (phase.sin().matrix().transpose() * columns);
   }
   return X;
+}
+
+Eigen::MatrixXcd without_ends(const Eigen::MatrixXcd& X, std::span<const double> time,
+                              std::span<const double> frequencies) {
+  const auto N = static_cast<Eigen::Index>(time.size());
+  const Eigen::Index count = X.rows();
+  const Eigen::Map<const Eigen::ArrayXd> t(time.data(), N);
+  Eigen::MatrixXd line(N, 2);
+  line << Eigen::VectorXd::Ones(N), (2.0 * t - t[0] - t[N - 1]) / std::max(t[N - 1] - t[0], 1e-300);
+  const auto stack = [&](const Eigen::MatrixXcd& over) {
+    Eigen::MatrixXd parts(2 * count, over.cols());
+    parts << over.real(), over.imag();
+    return parts;
+  };
+  Eigen::MatrixXd ends = stack(fourier_transform(line, time, frequencies));
+  // Where frequencies are multiples of one over the rows' length, nothing is left of the constant.
+  constexpr double nothing = 1e-9;
+  if (ends.col(0).norm() <= nothing * ends.col(1).norm()) ends = Eigen::MatrixXd(ends.col(1));
+  const Eigen::MatrixXd parts = stack(X);
+  const Eigen::MatrixXd left = parts - ends * ends.householderQr().solve(parts);
+  Eigen::MatrixXcd without(count, X.cols());
+  without.real() = left.topRows(count);
+  without.imag() = left.bottomRows(count);
+  return without;
 }
 
 }  // namespace sepcal

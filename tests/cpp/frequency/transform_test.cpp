@@ -51,6 +51,7 @@ TEST_CASE("white noise has parts of its own variance") {
       Eigen::MatrixXd::NullaryExpr(2000, 20, [&] { return 0.3 * draws.normal(); });
   const auto frequencies = sepcal::frequencies_of({0.1, 5.0, 0.0}, sepcal::duration_of(time));
   CHECK(frequencies.size() == 197);  // 1/40 Hz apart
+  CHECK(frequencies.front() == Approx(0.1));
   const Eigen::MatrixXcd X =
       sepcal::fourier_transform(sepcal::without_line(columns, time), time, frequencies);
   const auto count = static_cast<double>(X.size());
@@ -66,6 +67,33 @@ TEST_CASE("a straight line is nothing, whatever the times") {
     columns.row(k) << 4.0 - 2.0 * time[static_cast<std::size_t>(k)], 7.0;
   }
   CHECK(sepcal::without_line(columns, time).cwiseAbs().maxCoeff() < 1e-10);
+}
+
+TEST_CASE("a drift is its steps, each frequency by itself, once its ends are taken off") {
+  sepcal::test::Draws draws(7);
+  const std::vector<double> time = every(0.02, 1000);
+  Eigen::MatrixXd walk(1000, 1);
+  Eigen::MatrixXd steps(1000, 1);
+  double at = 5.0;
+  for (Eigen::Index k = 0; k < 1000; ++k) {
+    walk(k, 0) = at;
+    steps(k, 0) = draws.normal();
+    at += steps(k, 0);
+  }
+  const auto frequencies = sepcal::frequencies_of({0.1, 2.0, 0.0}, 20.0);
+  REQUIRE(frequencies.front() == Approx(0.1));
+  REQUIRE(frequencies.size() == 39);
+  // x_(k+1) - x_k summed over the whole: (z - 1) X = steps - z w_0 (x_0 - x_N).
+  const Eigen::MatrixXcd W = sepcal::fourier_transform(steps, time, frequencies);
+  Eigen::MatrixXcd cyclic(W.rows(), 1);
+  for (Eigen::Index m = 0; m < W.rows(); ++m) {
+    const auto f = frequencies[static_cast<std::size_t>(m)];
+    cyclic(m, 0) = W(m, 0) / (std::polar(1.0, 2.0 * pi * f * 0.02) - 1.0);
+  }
+  const Eigen::MatrixXcd X = sepcal::fourier_transform(walk, time, frequencies);
+  const Eigen::MatrixXcd left = sepcal::without_ends(X, time, frequencies);
+  const Eigen::MatrixXcd expected = sepcal::without_ends(cyclic, time, frequencies);
+  CHECK((left - expected).norm() < 1e-2 * expected.norm());
 }
 
 TEST_CASE("bands that are none are refused") {

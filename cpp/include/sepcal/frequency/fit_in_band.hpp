@@ -23,7 +23,7 @@ namespace sepcal {
 /// ones. A constant's are as though the spectrum went on to zero as at the band's low end.
 ///
 /// Throws Error for a model with nonlinear parameters, a record without `time`, a loss other than
-/// squares, and as frequencies_of() does for each segment.
+/// squares, and as frequencies_of() does for its segments.
 Fit fit_in_band(const BlockModel& model, const Record& record, const Band& band,
                 const FitOptions& options = {});
 

@@ -20,8 +20,8 @@ namespace sepcal {
 /// `noise` are of the band, in the size that a white noise of the rows would have there.
 ///
 /// Throws Error for a record without `time` or whose rows are not evenly spaced to a tenth of a
-/// step, a spacing of the band, a loss other than squares, and as frequencies_of() does for each
-/// segment.
+/// step, a spacing of the band, a loss other than squares, and as frequencies_of() does for its
+/// segments.
 Fit fit_output_error_in_band(const StateBlockModel& model, const Record& record, const Band& band,
                              const FitOptions& options = {});
 
