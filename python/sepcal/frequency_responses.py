@@ -42,6 +42,13 @@ class FrequencyResponse:
         windows: How many.
         averages: Independent windows that these are worth, as they overlap by half.
         notes: What was dropped, one line each.
+
+    Example:
+        >>> flight = sepcal.datasets.load("aircraft")
+        >>> of, to = "elevator_rad", "q_radps"
+        >>> found = sepcal.frequency_response(flight, of, to, window=2, band=(1, 3))
+        >>> bool((found.magnitude_low <= found.magnitude).all())
+        True
     """
 
     inputs: list[str]
@@ -69,6 +76,14 @@ class FrequencyResponse:
 
         Raises:
             Error: The file can't be written.
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> of, to = "elevator_rad", "q_radps"
+            >>> found = sepcal.frequency_response(flight, of, to, window=2, band=(1, 3))
+            >>> found.save(folder / "response.csv")
+            >>> (folder / "response.csv").read_text().split(",")[0]
+            'frequency_hz'
         """
         self._core.save(name_of(file))
 

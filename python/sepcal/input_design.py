@@ -32,6 +32,11 @@ class InputDesign:
         peak_factors: {header: (max - min) / (2 sqrt(2) rms)} of a multisine, 1 of a single sine.
         step: Of 3-2-1-1, how long a "1" lasts [s]; NaN of a multisine.
         share_in_band: Of 3-2-1-1, of its energy; NaN of a multisine.
+
+    Example:
+        >>> made = sepcal.multisines({"elevator_rad": 0.05}, duration=10)
+        >>> len(made.frequencies["elevator_rad"]), made.peak_factors["elevator_rad"] < 1.1
+        (20, True)
     """
 
     kind: str
@@ -48,6 +53,12 @@ class InputDesign:
 
         Raises:
             Error: The file can't be written.
+
+        Example:
+            >>> made = sepcal.three_two_one_one({"elevator_rad": 0.05})
+            >>> made.save(folder / "steps.csv")
+            >>> (folder / "steps.csv").read_text().splitlines()[0]
+            'time_s,elevator_rad'
         """
         self._core.save(name_of(file))
 
