@@ -13,8 +13,9 @@ using base::page;
 
 namespace {
 
-constexpr std::array verbs{"fit",       "compare", "diagnose", "add",     "apply", "intervals",
-                           "residuals", "export",  "simulate", "effects", "track", "two-step"};
+constexpr std::array verbs{"fit",       "compare",   "diagnose", "add",      "apply",
+                           "intervals", "residuals", "export",   "simulate", "effects",
+                           "track",     "two-step",  "response", "design"};
 
 Page list_of(CommandKind kind) {
   Page list;
@@ -60,7 +61,8 @@ const Command* find_command(std::string_view name) {
 
 std::string explain_unknown_command(const std::string& word) {
   if (std::ranges::find(verbs, word) != verbs.end()) {
-    const bool of_aircraft = word == "track" || word == "two-step";
+    const bool of_aircraft =
+        word == "track" || word == "two-step" || word == "response" || word == "design";
     return fmt::format("'{0}' is a verb; name the instrument first: {1}", word,
                        of_aircraft
                            ? fmt::format("sepcal aircraft {}", word)

@@ -75,6 +75,10 @@ constexpr std::array examples{
             "flight.csv --geometry aircraft.json --json"},
     Example{"track", "flight.csv base.json -o track.csv",
             "another.csv base.json --method iekf -o -"},
+    Example{"response", "flight.csv --of q_radps --input elevator_rad -o response.csv",
+            "flight.csv --of p_radps --input aileron_rad --input rudder_rad -o -"},
+    Example{"design", "--input elevator_rad=0.05 --input aileron_rad=0.1 -o inputs.csv",
+            "--signal 3-2-1-1 --input elevator_rad=0.05 --band 0.3:0.9 -o steps.csv"},
 };
 
 }  // namespace

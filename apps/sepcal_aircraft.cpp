@@ -23,6 +23,7 @@
 #include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft.hpp"
+#include "sepcal/flight/frequency.hpp"
 #include "sepcal/simulation/aircraft.hpp"
 #include "simulation_arguments.hpp"
 #include "tables.hpp"
@@ -38,6 +39,20 @@ constexpr const char* summary =
 
 std::vector<std::string> split_names(const std::string& text) {
   return text.empty() ? std::vector<std::string>{} : split(text, ',');
+}
+
+/// "0.1:2"; of nothing what a rigid aircraft does.
+Band parse_band(const std::string& text) {
+  Band band;
+  if (text.empty()) return band;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    throw Error(fmt::format("--band {}: write LOW:HIGH in Hz, as 0.1:2", text));
+  }
+  band.low = parse_value("--band", text.substr(0, colon));
+  band.high = parse_value("--band", text.substr(colon + 1));
+  check_band(band);
+  return band;
 }
 
 /// What is fitted and how it is laid along the flight, as text until the command line is whole.
@@ -57,9 +72,17 @@ class ModelArguments {
     add_model_to(verb);
     verb.add_option("--method", method_,
                     "output-error: states are integrated; filter-error: noise drives them too, and "
-                    "its size is estimated")
+                    "its size is estimated; frequency: over a band, of aero equation error, of an "
+                    "aircraft output "
+                    "error")
         ->type_name("HOW")
         ->capture_default_str();
+    verb.add_option("--band", band_,
+                    "of --method frequency [Hz]; else 0.1:2, what a rigid aircraft does")
+        ->type_name("LOW:HIGH");
+    verb.add_option("--spacing", spacing_,
+                    "of its frequencies [Hz]; else one over the length of a segment")
+        ->type_name("HZ");
     verb.add_option("--hessian", hessian_, "of filter error's standard errors: fisher or observed")
         ->type_name("WHICH")
         ->capture_default_str();
@@ -115,7 +138,10 @@ class ModelArguments {
     options.trajectory.outputs = split_names(outputs_);
     if (shoot_) options.trajectory.shoot = *shoot_;
     options.calibration = std::move(calibration);
-    options.calibration.fit.method = choice_of<FitMethod>("--method", method_);
+    options.band = resolve_band();
+    if (!options.band) {
+      options.calibration.fit.method = choice_of<FitMethod>("--method", method_);
+    }
     options.calibration.fit.hessian = choice_of<Hessian>("--hessian", hessian_);
     if (options.model == AircraftModel::aero &&
         options.calibration.fit.method == FitMethod::filter_error) {
@@ -127,6 +153,20 @@ class ModelArguments {
   }
 
  private:
+  /// None where the fit is in time.
+  std::optional<Band> resolve_band() const {
+    const bool is_over_band = method_ == "frequency";
+    if (!is_over_band && (!band_.empty() || spacing_)) {
+      throw Error(fmt::format("{} is of a fit over a band; give --method frequency with it",
+                              band_.empty() ? "--spacing" : "--band"));
+    }
+    if (!is_over_band) return std::nullopt;
+    Band band = parse_band(band_);
+    if (spacing_) band.spacing = *spacing_;
+    check_band(band);
+    return band;
+  }
+
   std::string model_ = "aero";
   std::string method_ = std::string(to_string(FitMethod::output_error));
   std::string hessian_ = std::string(to_string(Hessian::fisher));
@@ -135,6 +175,8 @@ class ModelArguments {
   std::string measured_;
   std::string outputs_;
   std::vector<std::string> equations_;
+  std::string band_;
+  std::optional<double> spacing_;
   std::optional<double> shoot_;
   AircraftOptions options_;
 };
@@ -169,6 +211,111 @@ class TrackArguments {
  private:
   std::string method_ = std::string(to_string(TrackMethod::ekf));
   AircraftTrackOptions options_;
+};
+
+/// A frequency response from columns to a column.
+class ResponseArguments {
+ public:
+  void add_to(CLI::App& verb) {
+    verb.add_option("--input", inputs_,
+                    "a column of the log by its header; each is taken with what the others leave; "
+                    "may be repeated")
+        ->type_name("COLUMN")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->required();
+    verb.add_option("--of", output_, "the column that follows them")
+        ->type_name("COLUMN")
+        ->required();
+    verb.add_option("--band", band_, "the frequencies [Hz]; else 0.1:2")->type_name("LOW:HIGH");
+    verb.add_option("--spacing", options_.band.spacing, "of them [Hz]; 0: one over the window")
+        ->type_name("HZ")
+        ->capture_default_str();
+    verb.add_option("--window", options_.window,
+                    "that is averaged over the flight [s]; 0: a fifth of its longest segment")
+        ->type_name("T")
+        ->capture_default_str();
+    verb.add_option("--level", options_.level, "of the ranges")
+        ->type_name("P")
+        ->capture_default_str();
+  }
+
+  FlightResponse find(const Flight& flight, const LogChoice& log) const {
+    ResponseOptions options = options_;
+    const Band band = parse_band(band_);
+    options.band.low = band.low;
+    options.band.high = band.high;
+    return find_response(flight, inputs_, output_, options, log);
+  }
+
+ private:
+  std::vector<std::string> inputs_;
+  std::string output_;
+  std::string band_;
+  ResponseOptions options_;
+};
+
+/// Inputs to be flown.
+class DesignArguments {
+ public:
+  void add_to(CLI::App& verb) {
+    verb.add_option("--input", inputs_,
+                    "a surface's column and its largest deflection, in the column's unit; may be "
+                    "repeated")
+        ->type_name("COLUMN=SIZE")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->required();
+    verb.add_option("--signal", signal_,
+                    "multisine: sums of sines, orthogonal between inputs; 3-2-1-1: steps of one "
+                    "input")
+        ->type_name("WHICH")
+        ->capture_default_str();
+    verb.add_option("--band", band_, "to be excited [Hz]; else 0.1:2")->type_name("LOW:HIGH");
+    verb.add_option("--duration", multisines_.duration, "of a multisine [s]")
+        ->type_name("T")
+        ->capture_default_str();
+    verb.add_option("--rate", multisines_.rate, "rows a second")
+        ->type_name("HZ")
+        ->capture_default_str();
+    verb.add_flag("--schroeder", schroeder_,
+                  "phases by Schroeder's formula, not those of the least peak factor");
+    verb.add_option("--before", steps_.before, "rest before steps [s]")
+        ->type_name("T")
+        ->capture_default_str();
+    verb.add_option("--after", steps_.after, "rest after steps [s]")
+        ->type_name("T")
+        ->capture_default_str();
+  }
+
+  InputDesign design() const {
+    Amplitudes amplitudes;
+    for (const std::string& text : inputs_) {
+      const auto [name, value] = parse_assignment("--input", text, "COLUMN=SIZE");
+      amplitudes.emplace_back(name, parse_value("--input", value));
+    }
+    if (signal_ == "multisine") {
+      MultisineOptions options = multisines_;
+      options.band = parse_band(band_);
+      options.optimised = !schroeder_;
+      return design_multisines(amplitudes, options);
+    }
+    if (signal_ != "3-2-1-1") {
+      throw Error(fmt::format("--signal {}: choose multisine or 3-2-1-1", signal_));
+    }
+    StepsOptions options = steps_;
+    options.band = parse_band(band_);
+    options.rate = multisines_.rate;
+    return design_steps(amplitudes, options);
+  }
+
+ private:
+  std::vector<std::string> inputs_;
+  std::string signal_ = "multisine";
+  std::string band_;
+  bool schroeder_ = false;
+  MultisineOptions multisines_;
+  StepsOptions steps_;
 };
 
 void add_deviations(CLI::App& verb, const std::string& name, std::vector<std::string>& texts,
@@ -206,11 +353,13 @@ class AircraftApp {
         add_(*cli.add_subcommand("add", "adds an effect and fits again")),
         apply_(*cli.add_subcommand("apply", "adds what was flown to a log")),
         track_(*cli.add_subcommand("track", "estimates against time, as a filter in flight")),
+        response_(*cli.add_subcommand("response", "finds frequency responses without a model")),
+        design_(*cli.add_subcommand("design", "makes inputs to be flown")),
         simulate_(*cli.add_subcommand("simulate", "makes a flight whose truth is known")),
         effects_(
             *cli.add_subcommand("effects", "lists effects, regressors and how to write more")) {
     for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &residuals_, &intervals_,
-                           &diagnose_, &add_, &apply_, &track_}) {
+                           &diagnose_, &add_, &apply_, &track_, &response_}) {
       add_flight(*verb);
     }
     add_more_flights(fit_, more_flights_, "other flights, fitted together with it; names in .csv");
@@ -253,6 +402,11 @@ class AircraftApp {
     add_output(add_, "NEXT.json", false);
     add_output(apply_, "CORRECTED.csv", true);
     add_output(track_, "TRACK.csv", true);
+    fit_arguments_.add_log_choice_to(response_);
+    response_arguments_.add_to(response_);
+    add_output(response_, "RESPONSE.csv", true);
+    design_arguments_.add_to(design_);
+    add_output(design_, "INPUT.csv", true);
     add_output(simulate_, "FLIGHT.csv", true);
     add_file(simulate_, "--truth", truth_,
              "the true parameters: read where the file is there, else written with the defaults")
@@ -261,7 +415,7 @@ class AircraftApp {
         ->type_name("AIRCRAFT.json");
     simulation_.add_to(simulate_);
     for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_,
-                           &apply_, &track_, &simulate_, &effects_}) {
+                           &apply_, &track_, &response_, &design_, &simulate_, &effects_}) {
       verb->add_flag("-j,--json", wishes_.json, "prints the result as JSON on standard output");
     }
     for (CLI::App* verb : {&fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_}) {
@@ -280,6 +434,8 @@ class AircraftApp {
     if (add_.parsed()) return add();
     if (apply_.parsed()) return apply();
     if (track_.parsed()) return track();
+    if (response_.parsed()) return response();
+    if (design_.parsed()) return design();
     if (simulate_.parsed()) return simulate();
     give(wishes_.json, aircraft_effects_json(), aircraft_effects_text());
     return 0;
@@ -443,10 +599,32 @@ class AircraftApp {
     const TrackedAircraft tracked =
         track_aircraft(base, read_flight(base.options.calibration.log), options);
     tell_notes(tracked.notes);
-    write_csv(tracked, output);
+    deliver_table(tracked, output);
+    return 0;
+  }
+
+  /// Writes a result that is a table, and prints what it says.
+  template <class Result>
+  void deliver_table(const Result& result, OutputFile& output) const {
+    write_csv(result, output);
     output.commit();
-    give(wishes_.json, to_json(tracked),
-         to_text(tracked) + page("wrote {}\n", wishes_.output).text());
+    give(wishes_.json, to_json(result),
+         to_text(result) + page("wrote {}\n", wishes_.output).text());
+  }
+
+  int response() const {
+    check_not_input(wishes_.output, flight_);
+    OutputFile output(wishes_.output);
+    const LogChoice log = fit_arguments_.over({});
+    const FlightResponse found = response_arguments_.find(read_flight(log), log);
+    tell_notes(found.notes);
+    deliver_table(found, output);
+    return 0;
+  }
+
+  int design() const {
+    OutputFile output(wishes_.output);
+    deliver_table(design_arguments_.design(), output);
     return 0;
   }
 
@@ -488,6 +666,8 @@ class AircraftApp {
   TrackArguments tracking_;
   FitArguments fit_arguments_;
   SimulationArguments simulation_;
+  ResponseArguments response_arguments_;
+  DesignArguments design_arguments_;
   DiagnoseArguments diagnosis_;
   IntervalArguments profiles_;
   CLI::App& check_;
@@ -500,6 +680,8 @@ class AircraftApp {
   CLI::App& add_;
   CLI::App& apply_;
   CLI::App& track_;
+  CLI::App& response_;
+  CLI::App& design_;
   CLI::App& simulate_;
   CLI::App& effects_;
 };

@@ -65,8 +65,10 @@ from sepcal.filters import Filter, SmoothedPass
 from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
 from sepcal.flight import Flight, read, read_csv, stream_csv
+from sepcal.frequency_responses import FrequencyResponse, frequency_response
 from sepcal.geomagnetism import EarthField, earth_field
 from sepcal.geometry import Aircraft, read_aircraft
+from sepcal.input_design import InputDesign, multisines, three_two_one_one
 from sepcal.intervals import Intervals, Prediction, predict, profile_intervals
 from sepcal.joining import join
 from sepcal.joint import fit_jointly
@@ -158,9 +160,11 @@ __all__ = [
     "FlightCheck",
     "FlightFit",
     "FlightPath",
+    "FrequencyResponse",
     "HistoryEntry",
     "Injection",
     "Innovation",
+    "InputDesign",
     "Intervals",
     "LeastSquares",
     "LocalMinimum",
@@ -227,12 +231,14 @@ __all__ = [
     "fit_many",
     "fit_noise",
     "fit_trials",
+    "frequency_response",
     "iterate_least_squares",
     "join",
     "list_log",
     "load",
     "matrix_exponential",
     "monte_carlo",
+    "multisines",
     "predict",
     "profile_intervals",
     "propagate",
@@ -247,6 +253,7 @@ __all__ = [
     "smooth",
     "stream_csv",
     "stream_trials",
+    "three_two_one_one",
     "track",
     "triads",
     "two_step",

@@ -8,10 +8,12 @@ import sepcal._core
 import typing
 
 __all__: list[str] = [
+    "Design",
     "Filter",
     "Fit",
     "Options",
     "RecursiveLeastSquares",
+    "Response",
     "StateTables",
     "SteppedFit",
     "Steps",
@@ -24,9 +26,11 @@ __all__: list[str] = [
     "fit",
     "flight_path",
     "foreign_reader",
+    "frequency_response",
     "iterate_least_squares",
     "join",
     "matrix_exponential",
+    "multisines",
     "parse",
     "propagate",
     "python_state_model",
@@ -38,6 +42,7 @@ __all__: list[str] = [
     "simulate",
     "smooth",
     "standard_regressors",
+    "three_two_one_one",
     "track",
     "two_steps",
 ]
@@ -170,6 +175,10 @@ class Options:
         trajectory: TrajectoryOptions,
         gravity: typing.SupportsFloat | typing.SupportsIndex,
         window: typing.SupportsFloat | typing.SupportsIndex,
+        band: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+        ]
+        | None,
         fit: sepcal._core.Options,
     ) -> None: ...
 
@@ -279,6 +288,55 @@ class Steps:
     @property
     def text(self) -> str: ...
 
+class Response:
+    def polar(self) -> list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]: ...
+    def save(self, arg0: str) -> None: ...
+    def to_text(self) -> str: ...
+    @property
+    def averages(self) -> float: ...
+    @property
+    def coherence(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def coherence_all(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def frequencies(self) -> list[float]: ...
+    @property
+    def inputs(self) -> list[str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def output(self) -> str: ...
+    @property
+    def radius(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def response(self) -> typing.Annotated[numpy.typing.NDArray[numpy.complex128], "[m, n]"]: ...
+    @property
+    def standard_error(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def window(self) -> float: ...
+    @property
+    def windows(self) -> int: ...
+
+class Design:
+    def save(self, arg0: str) -> None: ...
+    def to_text(self) -> str: ...
+    @property
+    def frequencies(self) -> list[list[float]]: ...
+    @property
+    def inputs(self) -> list[str]: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def peak_factors(self) -> list[float]: ...
+    @property
+    def share(self) -> float: ...
+    @property
+    def signals(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def step(self) -> float: ...
+    @property
+    def time(self) -> list[float]: ...
+
 def aero_coefficients(
     arg0: dict,
     arg1: collections.abc.Sequence[str],
@@ -315,6 +373,16 @@ def flight_path(
     arg3: TrajectoryOptions,
 ) -> sepcal._core.Model: ...
 def foreign_reader() -> typing.Any: ...
+def frequency_response(
+    arg0: sepcal._core.Flight,
+    arg1: collections.abc.Sequence[str],
+    arg2: str,
+    arg3: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    arg4: typing.SupportsFloat | typing.SupportsIndex,
+    arg5: typing.SupportsFloat | typing.SupportsIndex,
+) -> Response: ...
 def iterate_least_squares(
     arg0: collections.abc.Callable[
         [int, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]],
@@ -346,6 +414,15 @@ def join(
 def matrix_exponential(
     arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+def multisines(
+    arg0: collections.abc.Sequence[tuple[str, typing.SupportsFloat | typing.SupportsIndex]],
+    arg1: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    arg2: typing.SupportsFloat | typing.SupportsIndex,
+    arg3: typing.SupportsFloat | typing.SupportsIndex,
+    arg4: bool,
+) -> Design: ...
 def parse(arg0: str, arg1: str) -> Fit: ...
 def propagate(
     arg0: collections.abc.Callable[
@@ -401,6 +478,15 @@ def smooth(
     arg7: sepcal._core.Fit | None,
 ) -> sepcal._core.SmoothedRecord: ...
 def standard_regressors(arg0: str) -> list[str]: ...
+def three_two_one_one(
+    arg0: collections.abc.Sequence[tuple[str, typing.SupportsFloat | typing.SupportsIndex]],
+    arg1: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    arg2: typing.SupportsFloat | typing.SupportsIndex,
+    arg3: typing.SupportsFloat | typing.SupportsIndex,
+    arg4: typing.SupportsFloat | typing.SupportsIndex,
+) -> Design: ...
 def track(
     arg0: sepcal._core.Model,
     arg1: dict,

@@ -8,6 +8,7 @@ from typing import Any, Literal, Protocol, Unpack
 
 from sepcal import _core
 from sepcal.arguments import checked
+from sepcal.bands import to_band
 from sepcal.geometry import Aircraft
 from sepcal.states_module import states_module
 from sepcal.trajectories import TrajectoryOptions, complete, to_core_options
@@ -36,6 +37,9 @@ class Aero:
         equations: {coefficient: [regressors]} in their place: {"Cm": ["1", "alpha", "q_hat",
             "elevator", "alpha^2"]}.
         window: Of the local cubic that differentiates p, q and r [s]; 0: seven rows.
+        band: (low, high) of the frequencies over which it is fitted [Hz], (0.1, 2) for what a
+            rigid aircraft does [row by row in time].
+        spacing: Of these frequencies [Hz]; 0: one over the length of a segment.
 
     Example:
         >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
@@ -53,8 +57,11 @@ class Aero:
         *coefficients: str,
         equations: Equations | None = None,
         window: float = 0.0,
+        band: tuple[float, float] | None = None,
+        spacing: float = 0.0,
     ) -> None:
         self.aircraft, self.window = _to_aircraft(aircraft), float(window)
+        self.band = _to_band(band, spacing)
         self.equations = _to_equations(equations)
         for coefficient in coefficients:
             if not isinstance(coefficient, str):
@@ -71,10 +78,14 @@ class Aero:
             "trajectory": to_core_options(complete({})),
             "gravity": 9.80665,
             "window": self.window,
+            "band": self.band,
         }
 
     def __repr__(self) -> str:
-        return f"Aero({self.aircraft!r}, equations={self.equations!r}, window={self.window!r})"
+        over = "" if self.band is None else f", band={self.band[:2]}, spacing={self.band[2]}"
+        return (
+            f"Aero({self.aircraft!r}, equations={self.equations!r}, window={self.window!r}{over})"
+        )
 
 
 @checked
@@ -89,6 +100,8 @@ class RigidAircraft:
             coefficients that are not named].
         gravity: At the place of the flight [m/s^2].
         window: Of the local cubic that differentiates rates for the start [s]; 0: seven rows.
+        band: (low, high) of the frequencies over which it is fitted [Hz], linear about the flight's
+            means, without biases or initial states [in time].
         **options: TrajectoryOptions; `measured` and `outputs` are the axes' own where left out.
 
     Example:
@@ -109,6 +122,7 @@ class RigidAircraft:
         equations: Equations | None = None,
         gravity: float = 9.80665,
         window: float = 0.0,
+        band: tuple[float, float] | None = None,
         **options: Unpack[TrajectoryOptions],
     ) -> None:
         if axes not in ("longitudinal", "lateral", "six-dof"):
@@ -116,6 +130,7 @@ class RigidAircraft:
         self.aircraft, self.axes = _to_aircraft(aircraft), axes
         self.equations = _to_equations(equations)
         self.gravity, self.window = float(gravity), float(window)
+        self.band = _to_band(band, 0.0)
         self.options = complete(options)
 
     def _aircraft_options(self) -> dict[str, Any]:
@@ -126,10 +141,12 @@ class RigidAircraft:
             "trajectory": to_core_options(self.options),
             "gravity": self.gravity,
             "window": self.window,
+            "band": self.band,
         }
 
     def __repr__(self) -> str:
-        return f"RigidAircraft({self.aircraft!r}, {self.axes!r})"
+        over = "" if self.band is None else f", band={self.band[:2]}"
+        return f"RigidAircraft({self.aircraft!r}, {self.axes!r}{over})"
 
 
 def standard_regressors(coefficient: str) -> list[str]:
@@ -144,6 +161,14 @@ def _to_aircraft(aircraft: object) -> Aircraft:
         f"a {type(aircraft).__name__} is no aircraft; give sepcal.Aircraft(area=..., chord=..., "
         "span=..., mass=..., inertia=(Ix, Iy, Iz, Ixz)) or sepcal.read_aircraft(FILE)"
     )
+
+
+def _to_band(band: object, spacing: float) -> tuple[float, float, float] | None:
+    if band is None:
+        if spacing:
+            raise _core.Error("spacing is of the frequencies of a band; give band=(0.1, 2) with it")
+        return None
+    return to_band(band, spacing)
 
 
 def _to_equations(equations: Equations | None) -> dict[str, list[str]]:

@@ -202,6 +202,7 @@ class FlightPath(TrajectoryModel):
             "trajectory": to_core_options(self.options),
             "gravity": self.gravity,
             "window": 0.0,
+            "band": None,
         }
 
     def _settings(self) -> dict[str, Any]:

@@ -89,6 +89,9 @@ for model in longitudinal aero; do
 done
 run two-step aircraft two-step aircraft.csv --geometry aircraft.json -o two.json
 run track aircraft track another.csv longitudinal.json -o track.csv
+run band-fit aircraft fit aircraft.csv --model aero --geometry aircraft.json --method frequency --json
+run response aircraft response aircraft.csv --of q_radps --input elevator_rad --band 1:3 --window 2 -o response.csv
+run design aircraft design --input elevator_rad=0.05 --input aileron_rad=0.1 -o inputs.csv
 
 [[ -n $recordings ]] || exit 0
 run bench-check mag check "$recordings/bench_tilt_sphere_mag.csv" --field-strength 48

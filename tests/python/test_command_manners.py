@@ -20,7 +20,7 @@ VERBS = {
     "mag": "check fit compare intervals diagnose add apply export simulate effects residuals",
     "pitot": "check fit compare intervals diagnose add apply export simulate effects residuals",
     "aircraft": "check fit two-step compare intervals diagnose add apply track simulate effects "
-    "residuals",
+    "residuals response design",
 }
 EVERY_VERB = [(app, verb) for app, verbs in VERBS.items() for verb in verbs.split()]
 

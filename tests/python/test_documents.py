@@ -29,6 +29,8 @@ AIRCRAFT = (
     "add",
     "apply",
     "track",
+    "response",
+    "design",
     "simulate",
     "effects",
 )  # its verbs

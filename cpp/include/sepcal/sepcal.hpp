@@ -68,6 +68,11 @@
 #include "sepcal/detail/aircraft/equations.hpp"       // coefficients as sums of regressors
 #include "sepcal/detail/aircraft/coefficients.hpp"    // those that a flight had
 #include "sepcal/aircraft/aero_model.hpp"      // equation error
+#include "sepcal/detail/frequency/transform.hpp"      // a record over a band of frequencies
+#include "sepcal/frequency/fit_in_band.hpp"    // equation error there
+#include "sepcal/frequency/output_error_in_band.hpp"
+#include "sepcal/frequency/response.hpp"       // one column to others, without a model
+#include "sepcal/frequency/input_design.hpp"   // what to fly
 #include "sepcal/aircraft/two_step.hpp"
 #include "sepcal/aircraft/output_error.hpp"
 #include "sepcal/aircraft/rigid_aircraft.hpp"  // six degrees of freedom

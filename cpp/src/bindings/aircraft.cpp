@@ -5,6 +5,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <optional>
 #include <tuple>
 
@@ -27,19 +28,24 @@ namespace {
 using namespace py::literals;
 using Equations = std::map<std::string, std::vector<std::string>>;
 
-/// `geometry` is an aircraft as JSON; equations are {coefficient: [regressors]}.
+/// `band` is low, high, spacing [Hz]; `geometry` is an aircraft as JSON; equations are
+/// {coefficient: [regressors]}.
 AircraftOptions aircraft_options(const std::string& model,
                                  const std::optional<std::string>& geometry,
                                  const Equations& equations, const TrajectoryOptions& trajectory,
-                                 double gravity, double window, const CalibrationOptions& fit) {
+                                 double gravity, double window,
+                                 const std::optional<std::array<double, 3>>& band,
+                                 const CalibrationOptions& fit) {
   AircraftOptions options{.model = find_aircraft_model(model),
                           .geometry = {},
                           .equations = {},
                           .trajectory = trajectory,
                           .gravity = gravity,
                           .window = window,
+                          .band = {},
                           .calibration = fit};
   if (geometry) options.geometry = parse_aircraft(*geometry, "the aircraft");
+  if (band) options.band = Band{(*band)[0], (*band)[1], (*band)[2]};
   for (const auto& [coefficient, regressors] : equations) {
     options.equations.push_back({coefficient, regressors});
   }
@@ -275,7 +281,7 @@ void define_fits(py::module_& module) {
 void define_aircraft(py::module_& module) {
   py::class_<AircraftOptions>(module, "Options")
       .def(py::init(&aircraft_options), py::kw_only(), "model"_a, "geometry"_a, "equations"_a,
-           "trajectory"_a, "gravity"_a, "window"_a, "fit"_a);
+           "trajectory"_a, "gravity"_a, "window"_a, "band"_a, "fit"_a);
   define_fits(module);
   module.def("fit", &fit_aircraft, WithoutGil());
   module.def("two_steps", &two_steps, WithoutGil());

@@ -101,6 +101,7 @@ void define_trials(py::module_& module);
 
 // Of sepcal._states.
 void define_aircraft(py::module_& module);
+void define_frequency(py::module_& module);
 void define_aircraft_program(py::module_& module);
 void define_damped_sinusoids(py::module_& module);
 void define_filters(py::module_& module);

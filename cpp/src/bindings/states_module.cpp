@@ -15,5 +15,6 @@ PYBIND11_MODULE(_states, module) {
   define_filters(module);
   define_damped_sinusoids(module);
   define_aircraft(module);
+  define_frequency(module);
   define_aircraft_program(module);
 }

@@ -21,6 +21,7 @@
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/stepwise.hpp"
+#include "sepcal/detail/frequency/transform.hpp"
 #include "sepcal/states/smooth_record.hpp"
 #include "sepcal/states/track.hpp"
 
@@ -45,6 +46,9 @@ struct AircraftOptions {
   TrajectoryOptions trajectory = {};  // of path, where `outputs` are empty: those that are logged
   double gravity = 9.80665;           // m/s^2, at the place of the flight
   double window = 0.0;                // of CoefficientOptions, s
+  /// Fitted over these frequencies instead of in time: aero by fit_in_band(), an aircraft by
+  /// fit_output_error_in_band().
+  std::optional<Band> band = {};
   /// Of `free`: what a path holds at zero (FlightPath::held_at_zero), or scales and biases of an
   /// aircraft's outputs. Of `effects` the names alone.
   CalibrationOptions calibration = {};
@@ -75,7 +79,8 @@ struct AircraftFit {
   std::string file = {};                // that it was read from
 };
 
-/// "output-error", "filter-error", or "equation-error" of aero.
+/// "output-error", "filter-error"; of aero "equation-error"; over a band
+/// "frequency-output-error", "frequency-equation-error".
 std::string_view method_of(const AircraftFit& fitted);
 
 /// "Cm=1,alpha,q_hat". Throws Error, which says how to write it.

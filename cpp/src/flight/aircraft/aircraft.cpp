@@ -51,6 +51,32 @@ AircraftFit describe(const Flight& flight, AircraftOptions options, Fit fit) {
           .fit = std::move(fit)};
 }
 
+/// Throws Error for a band that can't be.
+void check_domain(const AircraftOptions& options) {
+  if (!options.band) return;
+  check_band(*options.band);
+  if (options.model == AircraftModel::path) {
+    throw Error("a flight path is fitted in time; leave the band out, or choose another model");
+  }
+  if (options.calibration.fit.method == FitMethod::filter_error) {
+    throw Error("filter error is of a fit in time; leave the band out, or the filter error");
+  }
+}
+
+/// Biases and initial states, which a fit over a band has none of, found in time; all else is held.
+Fit fit_rest_in_time(const AircraftFit& fitted, LaidAircraft& laid) {
+  laid.notes.emplace_back("biases and initial states are found in time, all else is held");
+  FitOptions options = laid.fit;
+  options.coloured_errors = false;
+  const std::vector<Variable> own = laid.model->tables().parameters();
+  for (const Parameter& parameter : fitted.fit.parameters) {
+    if (std::ranges::find(own, parameter.name, &Variable::name) == own.end()) continue;
+    options.fix[parameter.name] = parameter.value;
+    options.start.erase(parameter.name);
+  }
+  return fit(*laid.model, laid.record, options);
+}
+
 }  // namespace
 
 std::string_view to_string(AircraftModel model) {
@@ -69,6 +95,10 @@ AircraftModel find_aircraft_model(std::string_view name) {
 }
 
 std::string_view method_of(const AircraftFit& fitted) {
+  if (fitted.options.band) {
+    return fitted.options.model == AircraftModel::aero ? "frequency-equation-error"
+                                                       : "frequency-output-error";
+  }
   if (fitted.options.model == AircraftModel::aero) return "equation-error";
   return to_string(fitted.options.calibration.fit.method);
 }
@@ -96,6 +126,7 @@ AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
     throw OptionError(
         {Option{"free"}, ": equation error holds nothing that could be freed; leave it out"});
   }
+  check_domain(options);
   LaidAircraft laid = lay(flight, options);
   AircraftFit fitted = describe(flight, options, fit_laid(laid, laid.fit));
   fitted.equations = std::move(laid.equations);
@@ -108,6 +139,7 @@ AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
 
 TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   refuse_splines(options, "the two steps take products of powers alone");
+  if (options.band) throw Error("two steps are fitted in time; leave the band out");
   AircraftOptions second = options;
   second.model = AircraftModel::aero;
   second.calibration.free.clear();
@@ -210,6 +242,9 @@ AircraftOptions aircraft_log::options_on(const AircraftFit& fitted, const Flight
 }
 
 Fit aircraft_log::fit_on(const Flight& flight, const AircraftFit& fitted, LaidAircraft& laid) {
+  if (fitted.options.band && fitted.options.model != AircraftModel::aero) {
+    return fit_rest_in_time(fitted, laid);
+  }
   if (is_same_flight(fitted, flight) || laid.initial_states.empty()) return fitted.fit;
   laid.notes.push_back(fmt::format(
       "{} is not the flight of the fit: its initial states are estimated anew, all else is held",

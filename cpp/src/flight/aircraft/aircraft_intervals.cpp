@@ -22,6 +22,7 @@ FlightIntervals find_aircraft_intervals(const AircraftFit& fitted, const Flight&
         "a fit by filter error is not profiled: its noises would have to be found anew at every "
         "point; its standard errors are of the likelihood");
   }
+  need_rows_in_time(fitted, "is not profiled: it is linear, and its standard errors say all");
   const LaidAircraft laid = lay(flight, options_on(fitted, flight));
   return {
       .model = std::string(to_string(fitted.options.model)),

@@ -39,6 +39,11 @@ Json write_model(const AircraftOptions& options) {
   object.update(write_trajectory(options.trajectory));
   object["gravity"] = options.gravity;
   object["window"] = options.window;
+  if (options.band) {
+    object["band"] = {{"low", options.band->low},
+                      {"high", options.band->high},
+                      {"spacing", options.band->spacing}};
+  }
   if (options.geometry) object["geometry"] = Json::parse(to_json(*options.geometry));
   return object;
 }
@@ -55,6 +60,12 @@ void read_model(const Json& object, AircraftOptions& options) {
   along.scales_about_start = object.at("scales_about_start").get<bool>();
   options.gravity = object.at("gravity").get<double>();
   options.window = object.at("window").get<double>();
+  if (object.contains("band")) {
+    const Json& band = object.at("band");
+    options.band = Band{band.at("low").get<double>(), band.at("high").get<double>(),
+                        band.at("spacing").get<double>()};
+    check_band(*options.band);
+  }
   if (object.contains("geometry")) {
     options.geometry = parse_aircraft(object.at("geometry").dump(), "geometry");
   }

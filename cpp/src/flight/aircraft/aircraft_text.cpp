@@ -23,6 +23,9 @@ Page heading(const AircraftFit& fitted) {
   if (fitted.options.model != AircraftModel::aero) {
     text += page(", inputs {} between rows", to_string(fitted.options.trajectory.inputs));
   }
+  if (const auto& band = fitted.options.band) {
+    text += page(", {:.4g} to {:.4g} Hz", band->low, band->high);
+  }
   if (fitted.options.geometry && fitted.options.model != AircraftModel::path) {
     text += page(", pitch rate q {}", to_string(fitted.options.geometry->rate_reference));
   }

@@ -107,6 +107,7 @@ Eigen::MatrixXd added_outputs(const AircraftFit& fitted, const Flight& flight,
 
 FlightDiagnosis diagnose_aircraft(const AircraftFit& base, const Flight& flight,
                                   const DiagnosisOptions& options) {
+  need_rows_in_time(base, "has no rows for a diagnosis to test");
   std::vector<std::string> left_out;
   const AircraftFit fitted = without_suspects(base, flight, left_out);
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
@@ -116,6 +117,7 @@ FlightDiagnosis diagnose_aircraft(const AircraftFit& base, const Flight& flight,
 
 FlightDiagnosis diagnose_aircraft_with(const SizedEffect& injected, const AircraftFit& base,
                                        const Flight& flight, const DiagnosisOptions& options) {
+  need_rows_in_time(base, "has no rows for a diagnosis to test");
   std::vector<std::string> left_out;
   AircraftFit fitted = without_suspects(base, flight, left_out);
   Injection injection;

@@ -2,6 +2,7 @@
 #include "flight/aircraft/laid_aircraft.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -17,6 +18,8 @@
 #include "sepcal/composition.hpp"
 #include "sepcal/detail/aircraft/path.hpp"
 #include "sepcal/error.hpp"
+#include "sepcal/frequency/fit_in_band.hpp"
+#include "sepcal/frequency/output_error_in_band.hpp"
 #include "sepcal/states/stream_start.hpp"
 #include "states/composed_trajectory.hpp"
 
@@ -126,6 +129,47 @@ void join_effects(const AircraftOptions& options, LaidAircraft& laid) {
   put_back(settings, options, laid.effects);
 }
 
+/// What does nothing at the operating point, or the same as another there: constants and products.
+bool bends(const std::string& regressor) {
+  const std::vector<ChannelFactor>& factors = Regressor(regressor).factors();
+  return factors.size() != 1 || factors.front().power != 1 || factors.front().absolute;
+}
+
+/// Over a band the aircraft is linear: such regressors stay where equation error had them.
+void hold_bent(const AircraftOptions& options, LaidAircraft& laid) {
+  if (!laid.along.empty()) {
+    throw Error(
+        fmt::format("an aircraft with '{}' is fitted in time; leave the effect or the band "
+                    "out",
+                    effects_along(options, laid.effects).front().name));
+  }
+  std::vector<std::string> held;
+  for (const AeroEquation& equation : laid.equations) {
+    for (const std::string& regressor : equation.regressors) {
+      const std::string name = parameter_name(equation.coefficient, regressor);
+      const auto start = laid.fit.start.find(name);
+      if (!bends(regressor) || start == laid.fit.start.end()) continue;
+      if (laid.fit.fix.emplace(name, start->second).second) held.push_back(name);
+    }
+  }
+  for (const std::string& name : held) laid.fit.start.erase(name);
+  if (held.empty()) return;
+  laid.notes.push_back(fmt::format(
+      "about the flight's means the aircraft is linear: {} are held where equation error has them",
+      fmt::join(held, ", ")));
+}
+
+Fit fit_over_band(LaidAircraft& laid, const FitOptions& options) {
+  const auto* with_state = dynamic_cast<const StateBlockModel*>(laid.model.get());
+  if (with_state == nullptr) return fit_in_band(*laid.model, laid.record, *laid.band, options);
+  Fit found = fit_output_error_in_band(*with_state, laid.record, *laid.band, options);
+  laid.initial_states.clear();
+  for (int k = 0; k < found.n_1; ++k) {
+    laid.initial_states.push_back(found.parameters[static_cast<std::size_t>(k)].name);
+  }
+  return found;
+}
+
 /// Of the whole flight, or of its first rows.
 LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
                       std::optional<std::size_t> rows) {
@@ -134,6 +178,7 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
     throw Error("a flight path has no equations; leave them out, or fit a model of the aircraft");
   }
   laid.effects = options.calibration.effects;
+  laid.band = options.band;
   laid.equations = equations_of(options);
   ProbeRecord prepared = prepare(flight, options.model, options.calibration.log);
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
@@ -149,6 +194,7 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
     } else {
       lay_motion(options, laid);
       join_effects(options, laid);
+      if (laid.band) hold_bent(options, laid);
     }
   });
   return laid;
@@ -173,6 +219,14 @@ std::vector<AeroEquation> equations_of(const AircraftOptions& options) {
   return with_regressors(std::move(equations), options);
 }
 
+void need_rows_in_time(const AircraftFit& fitted, std::string_view what_it_needs) {
+  if (!fitted.options.band) return;
+  throw Error(
+      fmt::format("a fit over a band {}; fit the same equations in time for that, without "
+                  "the band",
+                  what_it_needs));
+}
+
 std::vector<EffectSetting> effects_along(const AircraftOptions& options,
                                          const std::vector<EffectSetting>& effects) {
   std::vector<EffectSetting> along;
@@ -183,6 +237,7 @@ std::vector<EffectSetting> effects_along(const AircraftOptions& options,
 }
 
 Fit fit_laid(LaidAircraft& laid, const FitOptions& options) {
+  if (laid.band) return fit_over_band(laid, options);
   if (laid.along.empty()) return fit(*laid.model, laid.record, options);
   return estimation::fit_with_steps(*laid.model, *laid.base, laid.along, laid.effects, laid.record,
                                     options);

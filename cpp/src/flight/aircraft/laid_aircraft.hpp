@@ -3,7 +3,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sepcal/detail/block_model.hpp"
@@ -24,6 +26,7 @@ struct LaidAircraft {
   std::shared_ptr<const BlockModel> base;  // the model without effects along its trajectory
   std::vector<EffectSetting> effects;      // with what they took from the flight
   std::vector<Effect> along;               // those along the trajectory, made
+  std::optional<Band> band;                // that it is fitted over
   double window = not_a_number;  // of the differentiation of rates [s]; NaN where there is none
   std::vector<std::string> initial_states;  // names of parameters
   std::vector<std::string> notes;
@@ -40,6 +43,9 @@ LaidAircraft lay(const Flight& flight, const AircraftOptions& options);
 
 /// The same for the first so many rows of its segments.
 LaidAircraft lay_first_rows(const Flight& flight, const AircraftOptions& options, std::size_t rows);
+
+/// Throws Error for a fit over a band, for a verb that looks at rows in time: "is profiled".
+void need_rows_in_time(const AircraftFit& fitted, std::string_view what_it_needs);
 
 /// A fit's own options for a flight: of another one than it was fitted to without its initial
 /// states.

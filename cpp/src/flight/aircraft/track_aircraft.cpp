@@ -69,6 +69,7 @@ std::vector<Variable> table_of(const Track& track, const BlockModel& model) {
 
 TrackedAircraft track_aircraft(const AircraftFit& fitted, const Flight& flight,
                                const AircraftTrackOptions& options) {
+  need_rows_in_time(fitted, "has no states or biases that a filter could begin with");
   AircraftOptions followed = options_on(fitted, flight);
   followed.trajectory.outputs = fitted.options.trajectory.outputs;  // what is logged is tracked
   const LaidAircraft laid = lay(flight, followed);

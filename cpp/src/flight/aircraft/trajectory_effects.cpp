@@ -195,7 +195,7 @@ DiagnosedFit diagnosed_trajectory(const AircraftFit& fitted, const Fit& fit,
 
 Promise promise_along(const AircraftFit& fitted, const Flight& flight, const AircraftFit& next,
                       const std::string& effect) {
-  if (fitted.options.model == AircraftModel::aero) return {};
+  if (fitted.options.model == AircraftModel::aero || fitted.options.band) return {};
   try {
     LaidAircraft laid = lay(flight, options_on(fitted, flight));
     const Fit fit = fit_on(flight, fitted, laid);
