@@ -388,6 +388,8 @@ class AircraftApp {
           "repeated");
     }
     tracking_.add_to(track_);
+    add_deviations(track_, "--walk", walk_,
+                   "lets a parameter change on the way, a random walk of SD [unit/sqrt(s)]");
     add_deviations(track_, "--initial-state", initial_states_,
                    "standard deviation of a state where a segment begins; else as good as "
                    "unknown; may be repeated");
@@ -593,6 +595,7 @@ class AircraftApp {
     check_not_input(wishes_.output, flight_);
     AircraftTrackOptions options = tracking_.resolve();
     options.how.process_noise = parse_deviations("--process-noise", process_noise_);
+    options.how.walk = parse_deviations("--walk", walk_);
     options.how.initial_states = parse_deviations("--initial-state", initial_states_);
     const AircraftFit base = read_aircraft_fit(base_);
     OutputFile output(wishes_.output);
@@ -662,6 +665,7 @@ class AircraftApp {
   std::string geometry_;
   std::vector<std::string> process_noise_;
   std::vector<std::string> initial_states_;
+  std::vector<std::string> walk_;
   ModelArguments model_;
   TrackArguments tracking_;
   FitArguments fit_arguments_;

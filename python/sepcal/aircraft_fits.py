@@ -392,6 +392,7 @@ class AircraftFit(Fit):
         method: Literal["rls", "ekf", "iekf", "srif", "rml"] | str = "ekf",
         noise: Mapping[str, float] | None = None,
         process_noise: Mapping[str, float] | None = None,
+        walk: Mapping[str, float] | None = None,
         initial_states: Mapping[str, float] | None = None,
         row_iterations: int = 20,
         tolerance: float = 1e-8,
@@ -407,6 +408,7 @@ class AircraftFit(Fit):
             method: As of sepcal.track().
             noise: Standard deviation of every output, in the first rows too [the start's].
             process_noise: As of smooth(); those not named are none.
+            walk: Random walks of parameters, as of sepcal.track().
             initial_states: Standard deviations of states where a segment begins [as good as
                 unknown].
             row_iterations: Of iekf, at most so many a row.
@@ -433,6 +435,7 @@ class AircraftFit(Fit):
             start_rows,
             dict(noise or {}),
             dict(process_noise or {}),
+            dict(walk or {}),
             dict(initial_states or {}),
             _core.IterationOptions(row_iterations, tolerance),
             forgetting,

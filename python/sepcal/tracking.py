@@ -136,6 +136,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
     start_rows: int | None = None,
     method: Literal["rls", "ekf", "iekf", "srif", "rml"] | str = "ekf",
     process_noise: Mapping[str, float] | None = None,
+    walk: Mapping[str, float] | None = None,
     initial_states: Mapping[str, float] | None = None,
     row_iterations: int = 20,
     tolerance: float = 1e-8,
@@ -160,7 +161,10 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             noises are estimated too, `q_alpha`, `r_alpha_m`.
         process_noise: Of a model with a state: roots of the noises' spectral densities, {name: sd},
             by the names and in the units of its table of noises; those not named are none. By rml
-            these are held, and those not named are estimated, as `noise` is of outputs.
+            these are held, and those not named are estimated, as `noise` is of outputs. With
+            start_rows the first rows are fitted by filter error then.
+        walk: Parameters that may change on the way, {name: sd}: random walks, sd what one gathers
+            in a second [unit / sqrt(s)]. Of ekf, iekf and srif.
         initial_states: Of states where a segment begins that `start_rows` hasn't fitted: {name: sd}
             [ten times the largest value of the state on the way, as good as unknown].
         row_iterations: Of iekf, at most so many a row.
@@ -225,6 +229,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             fitted,
             to_core(options),
             dict(process_noise or {}),
+            dict(walk or {}),
             dict(initial_states or {}),
             _core.IterationOptions(row_iterations, tolerance),
             forgetting,

@@ -117,6 +117,75 @@ def test_an_extended_filter_by_hand() -> None:
     assert list(found.rows) == list(range(batch, len(data["time"])))
 
 
+class Line:
+    """z = k v + c."""
+
+    inputs, outputs = {"v": "m/s"}, {"z": "m/s"}
+    linear, nonlinear = {"k": "1", "c": "m/s"}, {}
+
+    def at(self, u, xi2):
+        """A and b of every row."""
+        return np.stack([u.v, np.ones_like(u.v)], axis=-1)[:, None, :], np.zeros((len(u.v), 1))
+
+
+@pytest.mark.parametrize("method", ["ekf", "iekf", "srif"])
+def test_a_parameter_that_walks_by_hand(method: str) -> None:
+    """Of z = k v + c, k a random walk: the textbook's filter, at uneven times."""
+    draw = np.random.default_rng(3)
+    time = np.cumsum(draw.uniform(0.05, 0.2, 200))
+    v = 15.0 + 5.0 * np.sin(time)
+    k = np.where(time < time[120], 2.0, 1.5)
+    data = {"time": time, "v": v, "z": k * v + 0.7 + 0.1 * draw.standard_normal(time.size)}
+    noise = {"z": 0.1}
+    found = sepcal.track(Line(), data, start_rows=40, method=method, noise=noise, walk={"k": 0.05})
+    H = np.column_stack([v, np.ones(v.size)])
+    P = np.linalg.inv(H[:40].T @ H[:40] / 0.01)
+    s = P @ H[:40].T @ data["z"][:40] / 0.01
+    for row in range(40, time.size):
+        if row > 40:
+            P = P + np.diag([0.05**2 * (time[row] - time[row - 1]), 0.0])
+        gain = P @ H[row] / (H[row] @ P @ H[row] + 0.01)
+        s = s + gain * (data["z"][row] - H[row] @ s)
+        P = P - np.outer(gain, H[row] @ P)
+        at = row - 40
+        assert_allclose(found["k"][at], s[0], rtol=1e-7)
+        assert_allclose(found.standard_deviation("k")[at], np.sqrt(P[0, 0]), rtol=1e-6)
+    assert abs(found["k"][-1] - 1.5) < 3 * found.standard_deviation("k")[-1]
+    still = sepcal.track(Line(), data, start_rows=40, method=method, noise=noise)
+    assert abs(still["k"][-1] - 1.5) > 10 * still.standard_deviation("k")[-1]
+
+
+def test_an_aircraft_that_changes_is_followed() -> None:
+    """Halfway the aileron loses half of its power: let walk, it is found; held, it isn't."""
+    data = roll(rows=800)
+    half = 400
+    decay, p = np.exp(-2.0 * 0.05), data["p_m"][half] - 0.03
+    draw = np.random.default_rng(5)
+    for row in range(half, 800):
+        data["p_m"][row] = p + 0.03 + 0.01 * draw.normal()
+        p = decay * p + (1 - decay) / 2.0 * 10.0 * data["aileron"][row]
+    model = sepcal.Trajectory(RollMode(), inputs="hold")
+    given = {"start_rows": 150, "noise": {"p_m": 0.01}, "process_noise": {"p": 0.01}}
+    walking = sepcal.track(model, data, **given, walk={"La": 2.0})
+    still = sepcal.track(model, data, **given)
+    assert abs(walking["La"][-1] - 10.0) < 3 * walking.standard_deviation("La")[-1]
+    assert walking.standard_deviation("La")[-1] < 1.0
+    assert abs(still["La"][-1] - 10.0) > 10 * still.standard_deviation("La")[-1]
+
+
+def test_what_cannot_walk() -> None:
+    data = roll()
+    model = sepcal.Trajectory(RollMode(), inputs="hold")
+    for method, walk, said in (
+        ("ekf", {"Lb": 1.0}, "'Lb' can't walk: it is not estimated along the way; there are b_p, "),
+        ("ekf", {"La": -1.0}, "the walk of 'La' is no standard deviation; give 0 or more"),
+        ("rls", {"La": 1.0}, "walk is of ekf, iekf and srif; leave it out, or take ekf"),
+    ):
+        with pytest.raises(sepcal.Error) as error:
+            sepcal.track(model, data, start_rows=150, method=method, walk=walk)
+        assert said in str(error.value)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_a_model_in_python_is_tracked_as_one_in_cpp(method: str) -> None:
     """By a noise that moves the state only a little: its covariance over a step is another one."""

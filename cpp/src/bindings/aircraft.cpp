@@ -105,7 +105,7 @@ AppliedColumns apply_to(const AircraftFit& fitted, const Flight& flight,
 /// The track, its rows those of the flight.
 std::pair<Tracked, std::vector<std::string>> track_on(
     const AircraftFit& fitted, const Flight& flight, const std::string& method,
-    std::size_t start_rows, const Values& noise, const Values& process_noise,
+    std::size_t start_rows, const Values& noise, const Values& process_noise, const Values& walk,
     const Values& initial_states, const IterationOptions& iterations, double forgetting,
     int every) {
   TrackedAircraft tracked =
@@ -113,6 +113,7 @@ std::pair<Tracked, std::vector<std::string>> track_on(
                      {.how = TrackOptions{.method = choice_of<TrackMethod>("method", method),
                                           .noise = noise,
                                           .process_noise = process_noise,
+                                          .walk = walk,
                                           .initial_states = initial_states,
                                           .iterations = iterations,
                                           .forgetting = forgetting,

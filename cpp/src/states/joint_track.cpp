@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/name_list.hpp"
@@ -79,6 +80,12 @@ Layout lay_out(const TrajectoryPlan& plan, const StreamStart& start) {
   return layout;
 }
 
+std::vector<std::string> free_names(const Layout& layout) {
+  std::vector<std::string> names;
+  for (const int k : layout.free) names.push_back(layout.names[static_cast<std::size_t>(k)]);
+  return names;
+}
+
 Batch batch_of(const TrajectoryPlan& plan, const Layout& layout, const Record& record,
                const StreamStart& start) {
   Batch batch{std::vector<std::string>(layout.states.size())};
@@ -91,7 +98,7 @@ Batch batch_of(const TrajectoryPlan& plan, const Layout& layout, const Record& r
       batch.names[i] = begun.start_name(layout.states[i], begun.trajectories() - 1);
     }
   }
-  for (const int k : layout.free) batch.names.push_back(layout.names[static_cast<std::size_t>(k)]);
+  std::ranges::copy(free_names(layout), std::back_inserter(batch.names));
   return batch;
 }
 
@@ -139,6 +146,7 @@ class JointStream {
         layout_(lay_out(plan_, start)),
         xi_(layout_.start),
         density_(density_of(plan_, start, options)),
+        walk_(walk_of(free_names(layout_), options)),
         R_(noise_of(plan_.tables().outputs, start, options).cwiseAbs2().asDiagonal()),
         steps_(model.steps(record, xi_)) {
     base::deviations_in_order(plan_.model().states, options.initial_states, "state");
@@ -165,7 +173,7 @@ class JointStream {
     const Batch batch = batch_of(plan_, layout_, record_, start);
     const Beginning known = estimates_of(start, batch.names);
     const Segment& segment = record_.segments()[batch.segment];
-    const Beginning begin = start.rows == 0 ? restarted(known.s, known.root, segment)
+    const Beginning begin = start.rows == 0 ? restarted(known.s, known.root, segment, 0.0)
                                             : behind(known, segment.first, batch.row - 1);
     Filter<Dynamic, Form> filter(begin.s, form_of<Form>(begin.root));
     follow(filter, batch.segment, start.rows == 0 ? segment.first : batch.row - 1, start.rows > 0);
@@ -235,7 +243,9 @@ class JointStream {
       const Segment& segment = record_.segments()[i];
       if (i > first) {
         row = segment.first;
-        const Beginning begin = restarted(filter.x(), filter.form().root(), segment);
+        const Beginning begin = restarted(
+            filter.x(), filter.form().root(), segment,
+            std::max(0.0, seconds_between(record_, record_.segments()[i - 1].last - 1, row)));
         filter = Filter<Dynamic, Form>(begin.s, form_of<Form>(begin.root));
       }
       if (!seen) update(filter, row);
@@ -249,14 +259,16 @@ class JointStream {
   }
 
   /// A new segment: x begins anew, independent of the past; what is known of parameters, of s and
-  /// its covariance's root, stays.
-  Beginning restarted(VectorXd s, const MatrixXd& root, const Segment& segment) {
+  /// its covariance's root, stays, but for what walks in the `away` seconds before.
+  Beginning restarted(VectorXd s, const MatrixXd& root, const Segment& segment, double away) {
     set_parameters(s);
     s.head(n_x()) = steps_->start(segment.first);
     const VectorXd deviations =
         start_deviations(*steps_, segment, s.head(n_x()), layout_.states, options_.initial_states);
     const Index k = s.size() - n_x();
-    MatrixXd rows = root.rightCols(k);
+    MatrixXd rows = MatrixXd::Zero(root.rows() + k, k);
+    rows.topRows(root.rows()) = root.rightCols(k);
+    rows.bottomRows(k).diagonal() = (away * walk_).cwiseSqrt();
     MatrixXd marginal = MatrixXd::Zero(k, k);
     absorb_rows(marginal, rows);
     MatrixXd U = MatrixXd::Zero(s.size(), s.size());
@@ -279,9 +291,20 @@ class JointStream {
     const Index n = filter.x().size();
     Transition<Dynamic, Dynamic> next{filter.x(), MatrixXd::Identity(n, n),
                                       MatrixXd::Identity(n, n_x()), std::move(step.Q_d)};
+    if (!walk_.isZero(0.0)) {  // what walks is driven too
+      next.Q_d = with_walk(next.Q_d, seconds_between(record_, row, row + 1));
+      next.Gamma = MatrixXd::Identity(n, n);
+    }
     next.x.head(n_x()) = step.x;
     next.Phi.topRows(n_x()) = of_estimated(step.Phi);
     return filter.predict(next);
+  }
+
+  MatrixXd with_walk(const MatrixXd& Q_d, double seconds) const {
+    MatrixXd both = MatrixXd::Zero(n_x() + walk_.size(), n_x() + walk_.size());
+    both.topLeftCorner(n_x(), n_x()) = Q_d;
+    both.diagonal().tail(walk_.size()) = seconds * walk_;
+    return both;
   }
 
   template <class Form>
@@ -347,6 +370,7 @@ class JointStream {
   Layout layout_;
   VectorXd xi_;
   VectorXd density_;
+  VectorXd walk_;  // k, variance a second
   MatrixXd R_;
   std::unique_ptr<StateSteps> steps_;
   std::vector<std::span<const double>> outputs_;
@@ -382,6 +406,28 @@ VectorXd own_noise(const std::vector<Variable>& outputs, const StreamStart& star
 }
 
 }  // namespace
+
+VectorXd walk_of(const std::vector<std::string>& names, const TrackOptions& options) {
+  VectorXd variances = VectorXd::Zero(static_cast<Index>(names.size()));
+  for (const auto& [name, deviation] : options.walk) {
+    const auto at = std::ranges::find(names, name);
+    if (at == names.end()) {
+      throw Error("'" + name + "' can't walk: it is not estimated along the way; there are " +
+                  base::list_first(names, 12));
+    }
+    if (!(std::isfinite(deviation) && deviation >= 0.0)) {
+      throw Error("the walk of '" + name + "' is no standard deviation; give 0 or more");
+    }
+    variances[at - names.begin()] = deviation * deviation;
+  }
+  return variances;
+}
+
+double seconds_between(const Record& record, std::size_t row, std::size_t later) {
+  if (!record.has("time")) return static_cast<double>(later - row);
+  const auto time = record.column("time");
+  return time[later] - time[row];
+}
 
 VectorXd noise_of(const std::vector<Variable>& outputs, const StreamStart& start,
                   const TrackOptions& options) {

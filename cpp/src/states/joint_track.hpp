@@ -8,6 +8,14 @@
 
 namespace sepcal::states {
 
+/// Variances that random walks add in a second, one for each name; zero for those that don't walk.
+/// Throws Error for names that are not there, which the start holds or the model has not, and for
+/// deviations that are none.
+Eigen::VectorXd walk_of(const std::vector<std::string>& names, const TrackOptions& options);
+
+/// Seconds from a row to a later one; rows where the record has no time.
+double seconds_between(const Record& record, std::size_t row, std::size_t later);
+
 /// `method` is ekf, iekf or srif. Throws Error as track().
 Track track_jointly(const StateBlockModel& model, const Record& record, const StreamStart& start,
                     const TrackOptions& options);

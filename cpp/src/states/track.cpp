@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "base/name_list.hpp"
 #include "base/parameter_values.hpp"
@@ -76,6 +77,10 @@ void check_of_method(const TrackOptions& options) {
                                            " alone; leave it out, or take " +
                                            std::string(to_string(method))});
   };
+  if (!options.walk.empty() &&
+      (options.method == TrackMethod::rls || options.method == TrackMethod::rml)) {
+    throw OptionError({Option{"walk"}, " is of ekf, iekf and srif; leave it out, or take ekf"});
+  }
   refuse(options.forgetting != by_default.forgetting, "forgetting", TrackMethod::rml);
   refuse(options.every != by_default.every, "every", TrackMethod::rml);
   refuse(options.iterations.iterations != by_default.iterations.iterations, "row_iterations",
@@ -184,11 +189,17 @@ void track_linearised(Samples& samples, const StreamStart& start, Collected& col
 
 /// Every sample linearised where the filter is.
 template <class Form>
-void track_filtered(Samples& samples, const StreamStart& start, const TrackOptions& options,
-                    Collected& collected) {
+void track_filtered(Samples& samples, const Record& record, const StreamStart& start,
+                    const TrackOptions& options, Collected& collected) {
   const Index n_z = samples.noise().size();
   const VectorXd nothing = VectorXd::Zero(n_z);  // rows are residuals, whitened
   const MatrixXd unit = MatrixXd::Identity(n_z, n_z);
+  std::vector<std::string> names;
+  for (const int k : start.free) names.push_back(start.names[static_cast<std::size_t>(k)]);
+  const VectorXd walk = states::walk_of(names, options);
+  const bool walks = !walk.isZero(0.0);
+  const MatrixXd same = MatrixXd::Identity(walk.size(), walk.size());
+  std::optional<std::size_t> before;  // the row that the filter has seen last
   Filter<Dynamic, Form> filter(start.xi(start.free), Form::of_information_root(start.R));
   for (const auto& chunk : samples.measurements().chunks()) {
     for (const auto& range : chunk) {
@@ -197,6 +208,12 @@ void track_filtered(Samples& samples, const StreamStart& start, const TrackOptio
         if (range.offset + i < start.rows) continue;
         const model::Measurements::Range one{range.first + i, 1, range.offset + i,
                                              range.starts_segment && i == 0};
+        if (walks && before) {
+          const double seconds = states::seconds_between(record, *before, one.first);
+          filter.predict(
+              Transition<Dynamic, Dynamic>{filter.x(), same, same, (seconds * walk).asDiagonal()});
+        }
+        before = one.first;
         const auto expected = [&](const VectorXd& x) -> Linearisation<Dynamic, Dynamic> {
           const MatrixXd rows = samples.rows(one, x, nullptr);
           return {-rows.rightCols<1>(), rows.leftCols(x.size())};
@@ -248,9 +265,9 @@ Track track(const BlockModel& model, const Record& record, const StreamStart& st
   if (options.method == TrackMethod::rls) {
     track_linearised(samples, start, collected);
   } else if (options.method == TrackMethod::srif) {
-    track_filtered<InformationForm<Dynamic>>(samples, start, options, collected);
+    track_filtered<InformationForm<Dynamic>>(samples, record, start, options, collected);
   } else {
-    track_filtered<SquareRootForm<Dynamic>>(samples, start, options, collected);
+    track_filtered<SquareRootForm<Dynamic>>(samples, record, start, options, collected);
   }
   return std::move(collected.track());
 }

@@ -40,6 +40,10 @@ struct TrackOptions {
   /// A start from first rows is then one by filter error. By rml these are held, and those not
   /// named are estimated, from the start's on.
   std::map<std::string, double> process_noise = {};
+  /// Random walks of parameters that may change in flight, by name: the standard deviation that one
+  /// gathers in a second [its unit / sqrt(s)], or from a row to the next where the record has no
+  /// time. Of ekf, iekf and srif.
+  std::map<std::string, double> walk = {};
   /// Standard deviation of states where a segment begins that no mini-batch has fitted, about the
   /// model's start(u, z); of those not named ten times the largest value that the state has on the
   /// way, as good as unknown.
