@@ -6,9 +6,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <list>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -47,10 +52,26 @@ int open_nameless(const std::filesystem::path& folder) {
   return -1;
 }
 
+/// Throws Error where the name promises another form than text.
+void check_name(const std::filesystem::path& file) {
+  constexpr std::array<std::string_view, 13> others{
+      ".xlsx", ".xls",  ".parquet", ".feather", ".arrow", ".mat", ".h5",
+      ".hdf5", ".mcap", ".nc",      ".gz",      ".zst",   ".ulg"};
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return std::tolower(c); });
+  if (std::ranges::find(others, extension) == others.end()) return;
+  throw Error(
+      fmt::format("{}: what is written is text, which no {} file is; give another name, as "
+                  "{}.csv",
+                  file.string(), extension, file.stem().string()));
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path target)
     : named_(std::move(target)), target_(follow_links(named_)), stream_(this) {
+  check_name(named_);
   pending_.reserve(buffer_size);
   if (named_ == "/dev/stdout") {  // after what is there, and not in the place of a file behind it
     direct_ = true;

@@ -177,6 +177,15 @@ TEST_CASE("targets that can't be") {
   CHECK(count_files(folder.path()) == 1);
 }
 
+TEST_CASE("a name of another form than text is refused") {
+  const TemporaryFolder folder;
+  for (const char* name : {"log.xlsx", "log.Parquet", "log.csv.gz"}) {
+    CHECK_THROWS_WITH_AS(OutputFile(folder.path() / name), Contains("what is written is text"),
+                         Error);
+  }
+  OutputFile(folder.path() / "log.csv");
+}
+
 TEST_CASE("permissions are respected") {
   const TemporaryFolder folder;
   const std::filesystem::path target = folder.write("old", "base.json");
