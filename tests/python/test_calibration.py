@@ -64,6 +64,7 @@ def test_options_stand_in_the_calibration(flight: sepcal.SimulatedFlight) -> Non
         "delimiter": ";",
         "decimal": ".",
         "join": "linear",
+        "smooth_inputs": True,
     }
     of_states = {"process_noise", "method", "hessian"}  # tests/python/test_aircraft.py
     assert set(options) == set(sepcal.FitOptions.__annotations__) - of_states

@@ -146,6 +146,7 @@ def _given(parameter: str, output: str, effect: str, fit: sepcal.Fit) -> dict[st
         "delimiter": ";",
         "decimal": ",",
         "join": "linear",
+        "smooth_inputs": True,
     }
 
 

@@ -8,9 +8,9 @@
 
 #include "base/parts_of_record.hpp"
 #include "diagnosis/innovation_rows.hpp"
-#include "diagnosis/smooth_inputs.hpp"
 #include "effects/driven_rows.hpp"
 #include "model/measurements.hpp"
+#include "model/smooth_inputs.hpp"
 #include "model/sweep.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/error.hpp"
@@ -262,7 +262,7 @@ void CandidateRoom::linearise(const Candidate& released, base::ThreadPool& pool,
 }
 
 void CandidateRoom::smooth_regressors(std::vector<Index> columns, base::ThreadPool& pool) {
-  const Record smooth = smooth_inputs(record_, fitted_.model->tables());
+  const Record smooth = model::smooth_inputs(record_, fitted_.model->tables());
   const auto model = compose(fitted_.model, effects_, smooth);
   Record rows = smooth;
   rows.cut(fitted_.rows);

@@ -140,6 +140,10 @@ AircraftFit fit_aircraft(const Flight& flight, const AircraftOptions& options) {
 TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   refuse_splines(options, "the two steps take products of powers alone");
   if (options.band) throw Error("two steps are fitted in time; leave the band out");
+  if (options.calibration.log.smooth_inputs) {
+    throw OptionError({Option{"smooth_inputs"},
+                       " is of a fit; the path takes the noise out of what the second step reads"});
+  }
   AircraftOptions second = options;
   second.model = AircraftModel::aero;
   second.calibration.free.clear();

@@ -13,6 +13,7 @@
 #include "flight/aircraft/aircraft_columns.hpp"
 #include "flight/aircraft/aircraft_effects.hpp"
 #include "flight/aircraft/trajectory_effects.hpp"
+#include "flight/verbs/input_noise.hpp"
 #include "sepcal/aircraft/aero_model.hpp"
 #include "sepcal/aircraft/output_error.hpp"
 #include "sepcal/composition.hpp"
@@ -185,14 +186,21 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
   laid.notes = std::move(prepared.notes);
   laid.flight_rows = std::move(prepared.flight_rows);
   laid.fit = options.calibration.fit;
+  const auto smooth_inputs = [&] {
+    if (!options.calibration.log.smooth_inputs) return;
+    verbs::take_out_input_noise(laid.model->tables(), flight.name(), laid.record, laid.notes);
+  };
   within(flight, [&] {
     if (options.model == AircraftModel::path) {
       lay_along_path(options, laid);
+      smooth_inputs();
       join_effects(options, laid);
     } else if (options.model == AircraftModel::aero) {
       lay_coefficients(options, laid);
+      smooth_inputs();
     } else {
       lay_motion(options, laid);
+      smooth_inputs();
       join_effects(options, laid);
       if (laid.band) hold_bent(options, laid);
     }

@@ -38,6 +38,7 @@ struct OptionField {
     if (about.in_file == InFile::by_filter_error) {
       return options.fit.method == FitMethod::filter_error;
     }
+    if constexpr (std::is_same_v<Value, bool>) return in(options);
     if constexpr (requires { in(options).empty(); }) return !in(options).empty();
     if constexpr (requires { in(options).has_value(); }) return in(options).has_value();
     return true;
@@ -261,6 +262,11 @@ inline constexpr std::tuple option_fields{
             .unset = "they stand in one row",
             .flags = "--join",
             .form = "HOW",
+            .in_file = InFile::where_set}),
+    option("smooth_inputs", &LogChoice::smooth_inputs,
+           {.sentence = "takes the white noise out of the columns that the model reads as inputs, "
+                        "which biases the estimates; the outputs stay as logged",
+            .flags = "--smooth-inputs",
             .in_file = InFile::where_set}),
 };
 

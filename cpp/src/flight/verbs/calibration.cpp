@@ -19,6 +19,7 @@
 #include "flight/verbs/default_bounds.hpp"
 #include "flight/verbs/driver_ranges.hpp"
 #include "flight/verbs/held_options.hpp"
+#include "flight/verbs/input_noise.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "model/measurements.hpp"
 #include "sepcal/composition.hpp"
@@ -371,6 +372,7 @@ Calibration calibrate(std::shared_ptr<const Probe> probe, const Flight& flight,
   std::ranges::copy(prepared.filled, std::back_inserter(calibration.notes));
   std::ranges::move(notes, std::back_inserter(calibration.notes));
   note_pull(calibration, prepared, options);
+  note_input_noise(calibration, prepared);
   return calibration;
 }
 

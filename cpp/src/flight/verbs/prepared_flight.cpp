@@ -14,6 +14,7 @@
 #include "flight/files/flight_digest.hpp"
 #include "flight/logs/chosen_columns.hpp"
 #include "flight/probes/joined_quantities.hpp"
+#include "flight/verbs/input_noise.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/error.hpp"
 
@@ -24,6 +25,9 @@ PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice
   MendedFlight mended = mend(probe, read.flight, log);
   ProbeRecord readings = probe.prepare(mended.flight, log);
   readings.notes.insert(readings.notes.begin(), read.notes.begin(), read.notes.end());
+  if (log.smooth_inputs) {
+    take_out_input_noise(probe.model().tables(), flight.name(), readings.record, readings.notes);
+  }
   return {std::move(mended.flight),  std::move(readings),      std::move(read.flight),
           std::move(mended.bridged), std::move(mended.filled), std::move(mended.measured),
           std::move(mended.all),     std::move(mended.slow),   mended.loss_helps};

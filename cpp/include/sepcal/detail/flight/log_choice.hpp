@@ -46,6 +46,10 @@ struct LogChoice {
   /// "smooth", "linear" or "held"; empty: they must stand in one row.
   std::string join = {};
 
+  /// Take the white noise out of what the model reads as inputs, segment by segment. Outputs stay
+  /// as they were logged.
+  bool smooth_inputs = false;
+
   /// What of it says how to read the file.
   CsvForm form() const {
     CsvForm form{delimiter, decimal, {}};

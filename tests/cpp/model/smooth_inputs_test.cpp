@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Inputs without their white noise: what is not noisy stays as it is, what is comes nearer to the
 // truth, and angles that wrap are not torn.
-#include "diagnosis/smooth_inputs.hpp"
+#include "model/smooth_inputs.hpp"
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@
 namespace smooth_inputs_test {
 
 using namespace sepcal;
-using sepcal::diagnosis::smooth;
+using sepcal::model::smooth;
 using sepcal::test::Draws;
 
 namespace {
@@ -75,7 +75,7 @@ TEST_CASE("a record's inputs are smoothed by segment, and angles beyond pi") {
   record.cut({{"", 0, 300}, {"", 300, 600}});
   const Tables tables{
       .inputs = {{"yaw", "rad"}, {"vn", "m/s"}}, .outputs = {}, .linear = {}, .nonlinear = {}};
-  const Record smoothed = diagnosis::smooth_inputs(record, tables);
+  const Record smoothed = model::smooth_inputs(record, tables);
   double worst = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double off = std::remainder(smoothed.column("yaw")[i] - truth[i], 2.0 * std::numbers::pi);

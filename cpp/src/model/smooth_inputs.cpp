@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/smooth_inputs.hpp"
+#include "model/smooth_inputs.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
-namespace sepcal::diagnosis {
+namespace sepcal::model {
 namespace {
 
 using Eigen::ArrayXd;
@@ -65,10 +66,16 @@ class LocalQuadratic {
   double determinant_ = 0.0;
 };
 
-void unwrap(std::vector<double>& angles) {
+/// Less whole turns, so that no angle jumps from the one before; returns what each is less by.
+std::vector<double> unwrap(std::vector<double>& angles) {
+  std::vector<double> turns(angles.size(), 0.0);
   for (std::size_t i = 1; i < angles.size(); ++i) {
-    angles[i] = angles[i - 1] + std::remainder(angles[i] - angles[i - 1], 2.0 * std::numbers::pi);
+    const double before = angles[i - 1];
+    const double whole = before + std::remainder(angles[i] - before, 2.0 * std::numbers::pi);
+    turns[i] = angles[i] - whole;
+    angles[i] = whole;
   }
+  return turns;
 }
 
 }  // namespace
@@ -98,17 +105,21 @@ std::vector<double> smooth(std::span<const double> x) {
 Record smooth_inputs(const Record& record, const Tables& tables) {
   Record smoothed = record;
   for (const Variable& input : tables.inputs) {
-    if (input.name == "time" || !record.has(input.name)) continue;
+    const bool is_output =
+        std::ranges::find(tables.outputs, input.name, &Variable::name) != tables.outputs.end();
+    if (input.name == "time" || is_output || !record.has(input.name)) continue;
     const auto column = record.column(input.name);
     std::vector<double> values(column.begin(), column.end());
-    if (input.unit == "rad") unwrap(values);
+    const std::vector<double> turns =
+        input.unit == "rad" ? unwrap(values) : std::vector<double>(values.size(), 0.0);
     for (const Segment& segment : record.segments()) {
       const std::span<double> rows(values.data() + segment.first, segment.rows());
       std::ranges::copy(smooth(rows), rows.begin());
     }
+    std::ranges::transform(values, turns, values.begin(), std::plus<>());
     smoothed.replace(input.name, std::move(values));
   }
   return smoothed;
 }
 
-}  // namespace sepcal::diagnosis
+}  // namespace sepcal::model
