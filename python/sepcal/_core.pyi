@@ -208,6 +208,7 @@ class Options:
     sampling: str
     search: str
     second_stage: str
+    smooth_inputs: bool
     stage_one_segments: str
     stage_two_segments: str
     where: str

@@ -84,6 +84,8 @@ class FitOptions(TypedDict, total=False):
             shows].
         join: Brings quantities that are logged at other times to the rows of the measured one:
             smooth, linear or held [they stand in one row].
+        smooth_inputs: Takes the white noise out of the columns that the model reads as inputs,
+            which biases the estimates; the outputs stay as logged [False].
 
     Example:
         >>> options: sepcal.FitOptions = {"fix": {"w_d": 0.0}, "samples": 100, "seed": 1}
@@ -130,3 +132,4 @@ class FitOptions(TypedDict, total=False):
     delimiter: str | None
     decimal: str | None
     join: str | None
+    smooth_inputs: bool | None

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -80,8 +81,25 @@ TEST_CASE("a record's inputs are smoothed by segment, and angles beyond pi") {
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double off = std::remainder(smoothed.column("yaw")[i] - truth[i], 2.0 * std::numbers::pi);
     worst = std::max(worst, std::abs(off));
+    CHECK(std::abs(smoothed.column("yaw")[i] - yaw[i]) < 0.5);  // the turn as it was logged
   }
   CHECK(worst < 0.08);
+}
+
+TEST_CASE("outputs and the time stay as they are") {
+  Draws draws(5);
+  std::vector<double> values = motion(400);
+  for (double& value : values) value += 0.3 * draws.normal();
+  Record record;
+  record.add("time", values).add("vn", values).add("va", values);
+  const Tables tables{.inputs = {{"time", "s"}, {"vn", "m/s"}, {"va", "m/s"}},
+                      .outputs = {{"vn", "m/s"}},
+                      .linear = {},
+                      .nonlinear = {}};
+  const Record smoothed = model::smooth_inputs(record, tables);
+  CHECK(std::ranges::equal(smoothed.column("time"), values));
+  CHECK(std::ranges::equal(smoothed.column("vn"), values));
+  CHECK(!std::ranges::equal(smoothed.column("va"), values));
 }
 
 }  // namespace smooth_inputs_test

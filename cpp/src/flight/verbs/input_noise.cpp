@@ -106,6 +106,9 @@ std::vector<InputNoise> find_movers(const Calibration& calibration, const Prepar
   return movers.empty() ? noises : movers;
 }
 
+/// Of a probe whose inputs are the readings that it calibrates.
+bool allows_for_noise(const Probe& probe) { return probe.with_noise(1.0) != nullptr; }
+
 }  // namespace
 
 void take_out_input_noise(const Tables& tables, const std::string& flight, Record& record,
@@ -125,13 +128,24 @@ void take_out_input_noise(const Tables& tables, const std::string& flight, Recor
                                     describe(noises)));
 }
 
+void take_out_input_noise(const Probe& probe, const std::string& flight, ProbeRecord& readings) {
+  if (allows_for_noise(probe)) {
+    throw OptionError({flight + ": ", Option{"smooth_inputs"},
+                       fmt::format(" has no part here: {} reads what it calibrates, and allows for "
+                                   "its noise; leave it out",
+                                   probe.name())});
+  }
+  take_out_input_noise(probe.model().tables(), flight, readings.record, readings.notes);
+}
+
 void note_input_noise(Calibration& calibration, const PreparedFlight& prepared) {
   constexpr std::size_t most_rows = 20000;
   constexpr double much = 3.0;  // standard errors
   const Record& logged = prepared.readings.record;
   const Fit& fit = calibration.fit;
   if (calibration.options.log.smooth_inputs || calibration.probe->app() == own_app ||
-      logged.is_mapped() || logged.rows() > most_rows || fit.status != FitStatus::converged) {
+      allows_for_noise(*calibration.probe) || logged.is_mapped() || logged.rows() > most_rows ||
+      fit.status != FitStatus::converged) {
     return;
   }
   const Tables tables = calibration.probe->model().tables();

@@ -25,9 +25,7 @@ PreparedFlight prepare(const Probe& probe, const Flight& flight, const LogChoice
   MendedFlight mended = mend(probe, read.flight, log);
   ProbeRecord readings = probe.prepare(mended.flight, log);
   readings.notes.insert(readings.notes.begin(), read.notes.begin(), read.notes.end());
-  if (log.smooth_inputs) {
-    take_out_input_noise(probe.model().tables(), flight.name(), readings.record, readings.notes);
-  }
+  if (log.smooth_inputs) take_out_input_noise(probe, flight.name(), readings);
   return {std::move(mended.flight),  std::move(readings),      std::move(read.flight),
           std::move(mended.bridged), std::move(mended.filled), std::move(mended.measured),
           std::move(mended.all),     std::move(mended.slow),   mended.loss_helps};
