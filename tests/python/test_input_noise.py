@@ -16,6 +16,8 @@ import pytest
 import sepcal
 from apps import parse_json, run
 from boom_flight import ARM, Boom, fly
+from studies.trust.asked import MODELS
+from studies.trust.by_key import fly_key
 
 BOOM = sepcal.VaneBoom(lever_arm=ARM)
 CALM = Boom(gusts=0.0)
@@ -129,6 +131,34 @@ def test_nothing_is_said_where_noise_does_nothing(vanes: float) -> None:
             columns[vane] = columns[vane] + draw.normal(0, np.deg2rad(vanes), 900)
         fitted = sepcal.fit(BOOM, sepcal.Flight(columns))
         assert not lines_on_noise(fitted.notes), seed
+
+
+@pytest.mark.parametrize("noise", ["white", "AR(0.99)", "gusts", "quantised at 3 noises"])
+@pytest.mark.parametrize("probe", MODELS)
+def test_nothing_is_said_of_other_errors(probe: str, noise: str) -> None:
+    """Of ten flights each; no air moves a compass."""
+    if probe == "magnetometer" and noise == "gusts":
+        noise = "bursty"
+    for seed in range(6000, 6010):
+        _, flown = fly_key(("nothing", probe, noise, 0.0, 600, seed))
+        fitted = sepcal.fit(MODELS[probe], sepcal.Flight(flown.columns))
+        assert not lines_on_noise(fitted.notes), seed
+
+
+def test_what_a_line_promises_is_nearer_the_truth() -> None:
+    """Five-hole probes with noise in pressures and attitude, some of it loud: 30 flights."""
+    gains = []
+    for seed in range(5000, 5030):
+        _, flown = fly_key(("nothing", "five-hole", "noise of inputs", 0.0, 600, seed))
+        flight = sepcal.Flight(flown.columns)
+        fitted = sepcal.fit(MODELS["five-hole"], flight)
+        for note in lines_on_noise(fitted.notes):
+            name = note.split(" moves ")[1].split()[0]
+            smooth = sepcal.fit(MODELS["five-hole"], flight, smooth_inputs=True)
+            far, near = (abs(fit[name].value - flown.truth[name]) for fit in (fitted, smooth))
+            gains.append(near < far)
+    assert len(gains) >= 5
+    assert np.mean(gains) > 0.75
 
 
 def test_nothing_is_said_of_readings_that_jump() -> None:
