@@ -233,9 +233,10 @@ class Fit:
         arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         arg4: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-        arg6: sepcal._core.IterationOptions,
-        arg7: typing.SupportsFloat | typing.SupportsIndex,
-        arg8: typing.SupportsInt | typing.SupportsIndex,
+        arg6: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        arg7: sepcal._core.IterationOptions,
+        arg8: typing.SupportsFloat | typing.SupportsIndex,
+        arg9: typing.SupportsInt | typing.SupportsIndex,
     ) -> tuple[sepcal._core.Track, list[str]]: ...
     @property
     def equations(self) -> dict[str, list[str]]: ...
@@ -497,8 +498,9 @@ def track(
     arg6: sepcal._core.Options,
     arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     arg8: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg9: sepcal._core.IterationOptions,
-    arg10: typing.SupportsFloat | typing.SupportsIndex,
-    arg11: typing.SupportsInt | typing.SupportsIndex,
+    arg9: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg10: sepcal._core.IterationOptions,
+    arg11: typing.SupportsFloat | typing.SupportsIndex,
+    arg12: typing.SupportsInt | typing.SupportsIndex,
 ) -> sepcal._core.Track: ...
 def two_steps(arg0: sepcal._core.Flight, arg1: Options) -> Steps: ...

@@ -13,6 +13,7 @@
 #include "sepcal/aircraft/geometry.hpp"
 #include "sepcal/detail/aircraft/equations.hpp"
 #include "sepcal/detail/flight/output_file.hpp"
+#include "sepcal/detail/frequency/transform.hpp"
 #include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/flight/apply.hpp"
 #include "sepcal/flight/calibration.hpp"
@@ -21,7 +22,6 @@
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/stepwise.hpp"
-#include "sepcal/detail/frequency/transform.hpp"
 #include "sepcal/states/smooth_record.hpp"
 #include "sepcal/states/track.hpp"
 
