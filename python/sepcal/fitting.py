@@ -13,9 +13,10 @@ from sepcal.columns import by_name, labels_in, take_columns, take_drivers
 from sepcal.fit_options import FitOptions
 from sepcal.flight import AnyFlight, Flight, to_columns, to_flight
 from sepcal.models import Model
-from sepcal.options import refuse_log_choice, spelled_out, to_core
+from sepcal.options import log_choices, refuse_log_choice, spelled_out, to_core
 from sepcal.own_effect import Effect, given_effects, name_effects, to_core_effects
 from sepcal.own_state_model import AnyModel, as_model, own_among
+from sepcal.reading.frames import is_frame
 from sepcal.results import Fit
 from sepcal.trajectories import FlightPath
 
@@ -82,7 +83,8 @@ def fit(
     ):
         return fit_flight(model, to_flight(data, "fit(model, ", "", options), options)
     model = as_model(model)
-    columns_of_model = None if isinstance(data, Flight) else to_columns(data, model)
+    is_flight = isinstance(data, Flight) or (is_frame(data) and bool(log_choices(options)))
+    columns_of_model = None if is_flight else to_columns(data, model)
     if columns_of_model is None:
         data = to_flight(data, "fit(model, ", model, options)
     if model.runs_in_python:

@@ -102,13 +102,17 @@ def open_ends(bounds: Bounds | None) -> dict[str, tuple[float, float]]:
     }
 
 
+def log_choices(options: Mapping[str, Any]) -> list[str]:
+    """The options given that choose of a flight."""
+    nothing: tuple[object, ...] = (None, False, "", [], {}, ())
+    given = {name: options.get(name) for name in LOG_CHOICE}
+    return [name for name, v in given.items() if v not in nothing or isinstance(v, float)]
+
+
 def refuse_log_choice(options: Mapping[str, Any]) -> None:
     """Raises Error for an option that chooses of a flight, where there is none."""
-    nothing: tuple[object, ...] = (None, False, "", [], {}, ())
-    for name in LOG_CHOICE:
-        value = options.get(name)
-        if value not in nothing or isinstance(value, float):
-            raise _core.Error(f"{name} is for flights; give the data as a sepcal.Flight")
+    for name in log_choices(options):
+        raise _core.Error(f"{name} is for flights; give the data as a sepcal.Flight")
 
 
 def to_names(argument: str, names: Sequence[str]) -> list[str]:

@@ -86,6 +86,20 @@ def test_a_model_takes_its_own_columns_as_before(columns):
     assert by_frame.values.tolist() == fitted.values.tolist()
 
 
+def test_a_frame_is_a_flight_where_columns_are_chosen(columns, expected):
+    frame = pandas.DataFrame(columns).rename(columns={"airspeed_mps": "TAS"})
+    found = sepcal.fit(TUBE, frame, map={"airspeed_mps": "TAS"})
+    assert found["s_va"].value == expected["s_va"].value
+
+
+def test_a_header_of_several_rows_says_the_way_out(columns):
+    frame = pandas.DataFrame(columns)
+    frame.columns = pandas.MultiIndex.from_tuples([("log", name) for name in columns])
+    refuse(lambda: sepcal.fit(TUBE, frame), "df.columns = df.columns.get_level_values(-1)")
+    frame.columns = frame.columns.get_level_values(-1)
+    assert sepcal.fit(TUBE, frame).status == "converged"
+
+
 def test_units_of_xarray(columns):
     xarray = pytest.importorskip("xarray")
     data = xarray.Dataset(

@@ -48,7 +48,12 @@ def _of_pandas(frame: Any) -> Table:  # noqa: ANN401
         found.add(index.name, _array(index))
     for place, header in enumerate(frame.columns):
         if not isinstance(header, str):
-            raise _core.Error(f"a column is called {header!r}; its name must be a text")
+            raise _core.Error(
+                f"a column is called {header!r}, and a name is one text: of a header of several "
+                "rows df.columns = df.columns.get_level_values(-1) keeps the last"
+                if isinstance(header, tuple)
+                else f"a column is called {header!r}; its name must be a text"
+            )
         if header in found.columns:
             raise _core.Error(f"column '{header}' is there twice")
         _add(found, header, frame.iloc[:, place])
