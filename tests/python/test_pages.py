@@ -236,6 +236,7 @@ def test_every_option_stands_in_the_signature_with_its_default():
         "threads": 0,
         "drop_invalid": False,
         "loss_width": 0.0,
+        "smooth_inputs": False,
     }
     for name in sepcal.FitOptions.__annotations__:
         assert options[name].kind is inspect.Parameter.KEYWORD_ONLY
@@ -252,6 +253,7 @@ def test_help_says_what_each_option_is():
 
 def test_the_defaults_that_help_says_are_the_engines():
     entries = (inspect.getdoc(sepcal.FitOptions) or "").partition("Attributes:\n")[2]
+    entries = entries.partition("\nExample:")[0]
     said = {
         name: re.findall(r"\[([^\]]*)\]", text)
         for name, text in re.findall(r"^    (\w+): (.*?)(?=^    \w|\Z)", entries, re.M | re.S)

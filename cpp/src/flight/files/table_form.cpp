@@ -347,6 +347,7 @@ class Recogniser {
     bool comma = false;             // parts decimals
     bool point = false;             // does
     bool may_group = true;          // every point stands as if it parted thousands
+    bool whole = false;             // there are numbers without a mark: below a thousand, maybe
     std::string_view either = {};   // a number whose comma may part decimals or thousands
     std::string_view pointed = {};  // one with a point
     std::string groups = {};
@@ -372,6 +373,7 @@ class Recogniser {
           column.may_group = column.may_group && parse_number_as(number, {',', "."}).has_value();
         }
         if (look.either) column.either = cell;
+        column.whole = column.whole || number.find_first_of(".,' eE") == std::string_view::npos;
         for (const char mark : look.groups) {
           if (column.groups.find(mark) == std::string::npos) column.groups += mark;
         }
@@ -401,15 +403,19 @@ class Recogniser {
       if (column.comma || column.groups.find('.') != std::string::npos) {
         marks.decimal = ',';
         if (column.point && column.may_group) marks.groups += '.';
-      } else if (column.point && comma && column.may_group) {
+      } else if (column.point && column.may_group &&
+                 (comma || (column.whole && form_.delimiter != ','))) {
         marks.decimal = decide(column.pointed, alone && shows('.') ? ',' : '\0');
         if (marks.decimal == ',') marks.groups += '.';
       } else if (column.point) {
         marks.decimal = '.';
       } else if (!column.either.empty() && column.groups.empty()) {
-        marks.decimal = decide(column.either, alone ? (comma ? ',' : '.') : '\0');
+        const bool is_clear = alone && !(comma && column.whole);
+        marks.decimal = decide(column.either, is_clear ? (comma ? ',' : '.') : '\0');
       }
       if (marks.decimal == '.' && !column.either.empty()) add_group(marks, ',');
+      shown_marks_.push_back(marks.groups);
+      std::erase(shown_marks_.back(), marks.decimal);
       for (const Shown& other : shown) {  // of a column that has shown no thousands yet
         if (other.comma == (marks.decimal == ',')) {
           for (const char mark : other.groups) add_group(marks, mark);
@@ -435,25 +441,21 @@ class Recogniser {
 
   void note_marks() {
     std::vector<std::string> with_comma;
-    bool all = true;
-    std::string groups;
+    std::map<char, std::vector<std::string>> with_groups;
     for (const ColumnForm& column : form_.columns) {
-      if (column.marks.decimal == ',') {
-        with_comma.push_back(column.logged);
-      } else {
-        all = false;
-      }
-      for (const char mark : column.marks.groups) {
-        if (groups.find(mark) == std::string::npos) groups += mark;
-      }
+      if (column.marks.decimal == ',') with_comma.push_back(column.logged);
+      const std::string& groups = shown_marks_[column.cell];
+      for (const char mark : groups) with_groups[mark].push_back(column.logged);
     }
-    if (all && !with_comma.empty()) {
+    if (!with_comma.empty() && with_comma.size() == form_.columns.size()) {
       note("a comma is the decimal mark");
     } else if (!with_comma.empty()) {
       note(fmt::format("a comma is the decimal mark of {}, a point that of the others",
                        fmt::join(with_comma, ", ")));
     }
-    if (!groups.empty()) note(fmt::format("'{}' parts thousands", fmt::join(groups, "' and '")));
+    for (const auto& [mark, columns] : with_groups) {
+      note(fmt::format("'{}' parts thousands of {}", mark, fmt::join(columns, ", ")));
+    }
   }
 
   /// The lines above the rows that have as many cells, and whose comments have.
@@ -636,9 +638,10 @@ class Recogniser {
   std::span<const std::string_view> lines_;  // of all, those that are looked at closely
   std::deque<std::string> texts_;            // keeps what views point to
   Layout layout_;
-  SampledRows rows_;                // of these lines
-  SampledRows shown_;               // the same and some of later lines
-  std::vector<NumberMarks> marks_;  // of each cell
+  SampledRows rows_;                      // of these lines
+  SampledRows shown_;                     // the same and some of later lines
+  std::vector<NumberMarks> marks_;        // of each cell
+  std::vector<std::string> shown_marks_;  // of thousands, of each cell that has shown them
   std::vector<std::string> names_;
   std::vector<std::string> units_;
   TableForm form_;

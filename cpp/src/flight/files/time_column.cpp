@@ -349,7 +349,11 @@ void find_time(TableForm& form, const SampledRows& rows, const SampledRows& show
   const auto is_exact = [&](const ColumnForm& column) {
     return unit_in(column.header, "time", UnitKind::time) != nullptr && is_of_numbers(column);
   };
-  if (std::ranges::any_of(form.columns, is_exact)) return;
+  const auto exact = std::ranges::find_if(form.columns, is_exact);
+  if (exact != form.columns.end()) {
+    if (exact->header == time_header && !is_mapped(*exact)) take_packed_clock(form, shown, *exact);
+    return;
+  }
   for (ColumnForm& column : form.columns) {
     const TimeUnit* const unit = unit_of_time(column);
     if (unit == nullptr || is_mapped(column) || !is_of_numbers(column)) continue;

@@ -32,7 +32,9 @@ struct QuantityRange {
 constexpr std::array quantity_ranges{
     QuantityRange{"roll", {-6.3, 6.3}, "rad"}, QuantityRange{"pitch", {-1.6, 1.6}, "rad"},
     QuantityRange{"yaw", {-6.3, 6.3}, "rad"},  QuantityRange{"temp", {150, 400}, "K"},
-    QuantityRange{"rho", {0.02, 2}, "kg/m^3"}, QuantityRange{"ps", {5e3, 1.2e5}, "Pa"},
+    QuantityRange{"p", {-10, 10}, "rad/s"},    QuantityRange{"q", {-10, 10}, "rad/s"},
+    QuantityRange{"r", {-10, 10}, "rad/s"},    QuantityRange{"rho", {0.02, 2}, "kg/m^3"},
+    QuantityRange{"ps", {5e3, 1.2e5}, "Pa"},
 };
 
 constexpr Range dynamic_pressures{1, 5e4};  // [Pa]: airspeeds of 1 to 290 m/s at sea level
