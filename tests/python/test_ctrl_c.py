@@ -188,10 +188,10 @@ def test_worker_processes_end_at_once(tmp_path: Path):
 def test_the_report_says_it_in_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    def interrupted(*_: object) -> None:
+    def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(command, "to_flight_of", interrupted)
+    monkeypatch.setattr(command, "load", interrupted)
     page = tmp_path / "report.html"
     assert main(["report", "flight.csv", "base.json", "-o", str(page)]) == 130
     assert capsys.readouterr().err == "sepcal report: stopped by Ctrl-C; no file was written\n"
