@@ -226,15 +226,15 @@ FrequencyResponse frequency_response(const Record& record, const std::vector<std
 MagnitudeAndPhase magnitude_and_phase(const FrequencyResponse& of) {
   MagnitudeAndPhase found;
   const MatrixXd none(of.response.rows(), of.response.cols());
+  constexpr double whole_turn = 2.0 * std::numbers::pi;
   found.magnitude = of.response.cwiseAbs();
   found.magnitude_low = (found.magnitude - of.radius).cwiseMax(0.0);
   found.magnitude_high = found.magnitude + of.radius;
   found.phase = found.phase_low = found.phase_high = none;
-  constexpr double turn = 2.0 * std::numbers::pi;
   for (Index i = 0; i < none.cols(); ++i) {
     for (Index m = 0; m < none.rows(); ++m) {
       double phase = std::arg(of.response(m, i));
-      if (m > 0) phase -= turn * std::round((phase - found.phase(m - 1, i)) / turn);
+      if (m > 0) phase -= whole_turn * std::round((phase - found.phase(m - 1, i)) / whole_turn);
       const double share = of.radius(m, i) / found.magnitude(m, i);
       const double half = share < 1.0 ? std::asin(share) : not_a_number;
       found.phase(m, i) = phase;
