@@ -177,7 +177,8 @@ std::vector<double> find_strength_ratios(const FieldRows& field) {
 
 /// A unit that is wrong is so by every measure.
 void note_strength(const Log& log, const FieldRows& field, std::vector<LogNote>& notes) {
-  if (field.read.cols() == 0 || !(field.strength > 0)) return;
+  constexpr double largest = 200.0;  // uT; of a true field beyond it that is said
+  if (field.read.cols() == 0 || !(field.strength > 0) || field.strength > largest) return;
   const std::vector<double> ratios = find_strength_ratios(field);
   const double ratio =
       *std::ranges::min_element(ratios, {}, [](double r) { return std::abs(std::log(r)); });

@@ -122,13 +122,16 @@ bool check_field(const Field& names, const Range& range, const FindReading& find
   const std::string whose = given ? "given is"
                                   : fmt::format("of {}, {}, {} is usually", field[0].header,
                                                 field[1].header, field[2].header);
+  constexpr double nanotesla = 1e3;  // of a uT
+  const std::string mend = given && range.contains(strength / nanotesla)
+                               ? "; if it is in nT, give a thousandth of it"
+                               : suggest_units(field, range, strength, strength);
   std::vector<std::string> headers;
   if (!given) headers = {field[0].header, field[1].header, field[2].header};
   found.push_back(
       {std::move(headers),
        fmt::format("the field {} {:.4g} uT strong, which lies outside {:g} to {:g} uT{}", whose,
-                   strength, range.low, range.high,
-                   suggest_units(field, range, strength, strength))});
+                   strength, range.low, range.high, mend)});
   return true;
 }
 

@@ -140,8 +140,8 @@ TEST_CASE("a field that is given is no column of the log") {
     log[header] = {30, 31, 32, 33};
   }
   CHECK(mentions(sepcal::prepare_magnetometer(log.build(), {.field = {{3e4, 0, 4e4}}}).notes,
-                 "log: the field given is 5e+04 uT strong, which lies outside 5 to 200 uT; check "
-                 "its unit"));
+                 "log: the field given is 5e+04 uT strong, which lies outside 5 to 200 uT; if it "
+                 "is in nT, give a thousandth of it"));
 }
 
 TEST_CASE(
