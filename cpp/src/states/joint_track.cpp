@@ -173,10 +173,29 @@ class JointStream {
     const Batch batch = batch_of(plan_, layout_, record_, start);
     const Beginning known = estimates_of(start, batch.names);
     const Segment& segment = record_.segments()[batch.segment];
-    const Beginning begin = start.rows == 0 ? restarted(known.s, known.root, segment, 0.0)
-                                            : behind(known, segment.first, batch.row - 1);
+    if (start.rows == 0) {
+      const Beginning begin = restarted(known.s, known.root, segment, 0.0);
+      Filter<Dynamic, Form> filter(begin.s, form_of<Form>(begin.root));
+      follow(filter, batch.segment, segment.first, false);
+      return;
+    }
+    const std::size_t last = batch.row - 1;
+    const bool is_driven = !density_.isZero(0.0);
+    const Beginning begin = is_driven ? behind(known, segment.first, last) : rooted(known);
     Filter<Dynamic, Form> filter(begin.s, form_of<Form>(begin.root));
-    follow(filter, batch.segment, start.rows == 0 ? segment.first : batch.row - 1, start.rows > 0);
+    if (!is_driven) {  // x follows from s: in the filter's own form, which keeps what dies away
+      const VectorXd walk = std::exchange(walk_, VectorXd::Zero(walk_.size()));
+      for (std::size_t row = segment.first; row < last; ++row) predict(filter, row);
+      walk_ = walk;
+    }
+    follow(filter, batch.segment, last, true);
+  }
+
+  static Beginning rooted(const Beginning& known) {
+    MatrixXd rows = known.root;
+    Beginning begin{known.s, MatrixXd::Zero(known.s.size(), known.s.size())};
+    absorb_rows(begin.root, rows);
+    return begin;
   }
 
   /// From x at a segment's first row to x at the last row of the start, which these rows have told:

@@ -60,12 +60,14 @@ TEST_CASE("flight path reconstruction runs along a record from its first third")
     fit.start = model.initial_states(logged);
     fit.fix = {{"b_v", 0.0}, {"b_alpha", 0.0}, {"b_beta", 0.0}};
     if (!measured) fit.fix["b_psi"] = 0.0;
+    fit.method = sepcal::FitMethod::filter_error;
+    fit.process_noise = {{"ax", 1e-3}, {"ay", 1e-3}, {"az", 1e-3},
+                         {"p", 1e-5},  {"q", 1e-5},  {"r", 1e-5}};
     const auto start = sepcal::start_from_rows(FlightPath{}, logged, 500, fit, trajectory);
     for (const TrackMethod method : {TrackMethod::ekf, TrackMethod::iekf}) {
       CAPTURE(measured);
       TrackOptions options{.method = method};
-      options.process_noise = {{"ax", 1e-3}, {"ay", 1e-3}, {"az", 1e-3},
-                               {"p", 1e-5},  {"q", 1e-5},  {"r", 1e-5}};
+      options.process_noise = fit.process_noise;
       const Track found = sepcal::track(FlightPath{}, logged, start, options, trajectory);
       CHECK(found.estimates.rows() == 1000);
       check_end(found);

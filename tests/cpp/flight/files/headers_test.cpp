@@ -42,7 +42,7 @@ std::string miss_roll(const std::string& header) {
 
 TEST_CASE("a quantity's headers, the unit used inside first") {
   CHECK(accepted_headers("vn", UnitKind::speed) ==
-        Headers{"vn_mps", "vn_kt", "vn_kmh", "vn_ftps", "vn_fpm", "vn_mph"});
+        Headers{"vn_mps", "vn_kt", "vn_kmh", "vn_ftps", "vn_fpm", "vn_cmps", "vn_mph"});
   CHECK(accepted_headers("rho", UnitKind::density) == Headers{"rho_kgpm3", "rho_slugpft3"});
 }
 
@@ -135,14 +135,14 @@ TEST_CASE("a unit is never guessed") {
   };
   using enum UnitKind;
   for (const auto& [quantity, kind, header] : {Case{"airspeed", speed, "Airspeed"},
-                                               {"vn", speed, "VN_CMPS"},
+                                               {"vn", speed, "VN_MMPS"},
                                                {"vn", speed, "vn (km/s)"},
                                                {"temp", temperature, "Temp"},
                                                {"pt", pressure, "PT_MPA"},
                                                {"roll", angle, "roll (mrad)"},
                                                {"roll", angle, "ROLL_GRAD"},
-                                               {"mx", field, "MX_T"},
-                                               {"mx", field, "mx (mT)"},
+                                               {"mx", field, "MX_PT"},
+                                               {"mx", field, "mx (pT)"},
                                                {"time", time, "TIME_D"}}) {
     const std::string asked = asked_for(quantity, kind, Headers{header});
     const std::string quoted = "; '" + std::string(header) + "' ";
@@ -150,7 +150,7 @@ TEST_CASE("a unit is never guessed") {
                    asked.starts_with(quoted + "is in a unit that is not known: convert it to one")),
                   header);
   }
-  for (const auto& [quantity, kind, header] : {Case{"mx", field, "Mag_X [mT]"},
+  for (const auto& [quantity, kind, header] : {Case{"mx", field, "Mag_X [pT]"},
                                                {"pt", pressure, "total pressure [MPa]"},
                                                {"vn", speed, "GPS_VN"},
                                                {"vn", speed, "GPS_VN (km/s)"}}) {

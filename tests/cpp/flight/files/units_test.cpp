@@ -39,9 +39,9 @@ TEST_CASE("each kind has its units, the inside one first") {
   CHECK(list_suffixes(UnitKind::time) == "s ms us ns min h ");
   CHECK(list_suffixes(UnitKind::angle) == "rad deg ");
   CHECK(list_suffixes(UnitKind::rate) == "radps degps ");
-  CHECK(list_suffixes(UnitKind::speed) == "mps kt kmh ftps fpm mph ");
+  CHECK(list_suffixes(UnitKind::speed) == "mps kt kmh ftps fpm cmps mph ");
   CHECK(list_suffixes(UnitKind::pressure) == "pa hpa kpa psi psf torr bar mmhg inhg mmh2o inh2o ");
-  CHECK(list_suffixes(UnitKind::field) == "ut nt gauss mgauss ");
+  CHECK(list_suffixes(UnitKind::field) == "ut nt t mt gauss mgauss ");
   CHECK(list_suffixes(UnitKind::temperature) == "k degc degf degr ");
   CHECK(list_suffixes(UnitKind::density) == "kgpm3 slugpft3 ");
   CHECK(list_suffixes(UnitKind::angular_acceleration) == "radps2 degps2 ");
