@@ -160,10 +160,10 @@ void hold_bent(const AircraftOptions& options, LaidAircraft& laid) {
       fmt::join(held, ", ")));
 }
 
-Fit fit_over_band(LaidAircraft& laid, const FitOptions& options) {
+Fit fit_over_band(LaidAircraft& laid, const Band& band, const FitOptions& options) {
   const auto* with_state = dynamic_cast<const StateBlockModel*>(laid.model.get());
-  if (with_state == nullptr) return fit_in_band(*laid.model, laid.record, *laid.band, options);
-  Fit found = fit_output_error_in_band(*with_state, laid.record, *laid.band, options);
+  if (with_state == nullptr) return fit_in_band(*laid.model, laid.record, band, options);
+  Fit found = fit_output_error_in_band(*with_state, laid.record, band, options);
   laid.initial_states.clear();
   for (int k = 0; k < found.n_1; ++k) {
     laid.initial_states.push_back(found.parameters[static_cast<std::size_t>(k)].name);
@@ -245,7 +245,7 @@ std::vector<EffectSetting> effects_along(const AircraftOptions& options,
 }
 
 Fit fit_laid(LaidAircraft& laid, const FitOptions& options) {
-  if (laid.band) return fit_over_band(laid, options);
+  if (laid.band) return fit_over_band(laid, *laid.band, options);
   if (laid.along.empty()) return fit(*laid.model, laid.record, options);
   return estimation::fit_with_steps(*laid.model, *laid.base, laid.along, laid.effects, laid.record,
                                     options);
