@@ -18,9 +18,8 @@
 namespace sepcal::logs {
 namespace {
 
-// Of a parabola, in usual intervals, to either side. A wider one keeps less noise and takes
-// something off every turn, so that the scale comes out wrong; noise does no such thing.
-constexpr double width = 3.0;
+constexpr std::array widths{3.0, 4.0, 6.0, 8.0, 12.0};  // of a parabola, in usual intervals
+constexpr double as_good = 1.02;  // squares of predictions' errors, over the least
 
 }  // namespace
 
@@ -54,6 +53,7 @@ SlowColumn::SlowColumn(std::span<const double> time, std::span<const double> val
   unwrap(turn);
   if (!intervals.empty()) interval_ = base::usual_interval(intervals);
   cut_at_gaps(base::find_gap(std::move(intervals)));
+  if (joining_ == Joining::smooth && samples() > 1) choose_width();
 }
 
 /// Samples of an angle that jumps, without jumps; at() brings them back into the turn.
@@ -104,24 +104,23 @@ double SlowColumn::on_line(std::size_t after, double time) const {
 
 /// Where too few samples are near for a parabola, on the line.
 double SlowColumn::on_parabola(std::size_t after, double time) const {
-  const double value = fit_parabola(after, time);
+  const double value = fit_parabola(after, time, width_).value;
   if (std::isfinite(value)) return value;
   return time_[after] == time ? values_[after] : on_line(after, time);
 }
 
-/// By the samples of the stretch of `near` about the time, weighted to nothing at the width; NaN
-/// where they are fewer than four.
-double SlowColumn::fit_parabola(std::size_t near, double time) const {
+/// By the samples of the stretch of `near` within the width [s]; NaN where they are fewer than
+/// four.
+SlowColumn::Fitted SlowColumn::fit_parabola(std::size_t near, double time, double width) const {
   constexpr int fewest = 4;
-  const double reach = width * interval_;
   const std::size_t stretch = stretches_[near];
   std::size_t first = near;
-  while (first > stretch && time - time_[first - 1] < reach) --first;
+  while (first > stretch && time - time_[first - 1] < width) --first;
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d products = Eigen::Vector3d::Zero();
   int count = 0;
   for (std::size_t i = first; i < time_.size() && stretches_[i] == stretch; ++i) {
-    const double x = (time_[i] - time) / reach;
+    const double x = (time_[i] - time) / width;
     if (x >= 1.0) break;
     const double within = 1.0 - x * x;
     if (!(within > 0.0)) continue;
@@ -131,8 +130,35 @@ double SlowColumn::fit_parabola(std::size_t near, double time) const {
     products += weight * (values_[i] - values_[near]) * powers;
     ++count;
   }
-  if (count < fewest) return not_a_number;
-  return values_[near] + Eigen::LDLT<Eigen::Matrix3d>(squares).solve(products)[0];
+  if (count < fewest) return {not_a_number, not_a_number};
+  const Eigen::LDLT<Eigen::Matrix3d> solver(squares);
+  return {values_[near] + solver.solve(products)[0], solver.solve(Eigen::Vector3d::UnitX())[0]};
+}
+
+/// The mean square by which a sample lies off the parabola of the others.
+double SlowColumn::prediction_error(double width) const {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < time_.size(); ++i) {
+    const auto [value, own_weight] = fit_parabola(i, time_[i], width);
+    if (!std::isfinite(value) || !(own_weight < 1.0)) continue;
+    const double error = (values_[i] - value) / (1.0 - own_weight);
+    sum += error * error;
+    ++count;
+  }
+  return count == 0 ? infinity : sum / static_cast<double>(count);
+}
+
+/// The widest that predicts about as well as the best: the less noise a parabola keeps, the less
+/// its slope's is taken for what a shift in time would do.
+void SlowColumn::choose_width() {
+  std::array<double, widths.size()> errors{};
+  std::ranges::transform(widths, errors.begin(),
+                         [this](double w) { return prediction_error(w * interval_); });
+  const double best = std::ranges::min(errors);
+  std::size_t chosen = widths.size() - 1;
+  while (chosen > 0 && !(errors[chosen] <= as_good * best)) --chosen;
+  width_ = widths[chosen] * interval_;
 }
 
 }  // namespace sepcal::logs

@@ -3,8 +3,8 @@
 // parabolas. A parabola is fitted to the samples about the time that is asked for, with the weights
 // (1 - (dt / w)^2)^3 (Cleveland & Devlin, J. Am. Stat. Assoc. 83, 1988). Unlike a straight line,
 // which has half the noise in the middle between two samples, it has the same noise everywhere: a
-// cost that shifts the column in time is not pulled to where noise is least. The width w is three
-// intervals.
+// cost that shifts the column in time is not pulled to where noise is least. The width w is the
+// one, of 3 to 12 intervals, by which the samples that are left out are predicted best.
 #pragma once
 
 #include <cstddef>
@@ -30,6 +30,8 @@ class SlowColumn {
   SlowColumn(std::span<const double> time, std::span<const double> values, Joining joining,
              double turn = 0.0);
 
+  std::size_t samples() const { return time_.size(); }
+
   /// The usual interval [s] from one sample to the next; NaN of fewer than two.
   double interval() const { return interval_; }
 
@@ -37,11 +39,19 @@ class SlowColumn {
   double at(double time) const;
 
  private:
+  /// Of a parabola about a time: its value there, and the weight in it of a sample at that time.
+  struct Fitted {
+    double value;
+    double own_weight;
+  };
+
   void unwrap(double turn);
   void cut_at_gaps(double gap);
+  void choose_width();
+  double prediction_error(double width) const;
   double on_line(std::size_t after, double time) const;
   double on_parabola(std::size_t after, double time) const;
-  double fit_parabola(std::size_t near, double time) const;
+  Fitted fit_parabola(std::size_t near, double time, double width) const;
 
   Joining joining_;
   std::vector<double> time_;            // s
@@ -50,6 +60,7 @@ class SlowColumn {
   double turn_ = 0.0;                   // where an angle jumps
   double lowest_ = 0.0;                 // where its turn begins
   double interval_;
+  double width_ = 0.0;  // of parabolas [s]
 };
 
 }  // namespace sepcal::logs
