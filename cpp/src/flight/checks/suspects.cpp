@@ -41,6 +41,10 @@ bool is_axis(std::string_view quantity) {
 
 bool is_of_aircraft(const Log& log) { return log.looks_at() != probes::LooksAt::readings; }
 
+bool is_velocity(std::string_view quantity) {
+  return quantity == "vn" || quantity == "ve" || quantity == "vd";
+}
+
 /// What reads the quantity, and at a fault all that it reads: of a probe the attitude and the rest,
 /// of an aircraft, whose motion all of them show, each unit.
 std::string_view sensor_of(const Log& log, const LoggedColumn& column) {
@@ -50,7 +54,7 @@ std::string_view sensor_of(const Log& log, const LoggedColumn& column) {
   }
   const std::string_view name = column.name();
   if (name == "roll" || name == "pitch" || name == "yaw") return "attitude";
-  if (name == "vn" || name == "ve" || name == "vd") return "receiver";
+  if (is_velocity(name)) return "receiver";
   const UnitKind kind = column.kind();
   if (kind == UnitKind::acceleration) return "accelerometers";
   return kind == UnitKind::rate || kind == UnitKind::angular_acceleration ? "gyros" : "air data";
@@ -67,10 +71,6 @@ Manner manner_in(const Log& log, const LoggedColumn& column) {
 /// and what is usual would not be seen in one of them.
 std::vector<Segment> find_stretches_of(const Log& log) {
   return is_of_aircraft(log) ? probes::find_stretches(log.time(), {}) : log.stretches();
-}
-
-bool is_velocity(std::string_view quantity) {
-  return quantity == "vn" || quantity == "ve" || quantity == "vd";
 }
 
 /// Whether the air tells that the vehicle stands in these rows.
