@@ -191,6 +191,11 @@ class TrackArguments {
                     "recursive maximum likelihood, which estimates the noises' sizes too")
         ->type_name("HOW")
         ->capture_default_str();
+    verb.add_option("--changes", changes_,
+                    "of ekf, iekf, srif, parameters that jump on the way: ignore; find the first "
+                    "and say when and which; follow: open what moved and go on")
+        ->type_name("HOW")
+        ->capture_default_str();
     verb.add_option("--forgetting", options_.how.forgetting,
                     "of rml: what a sample counts for after the next")
         ->type_name("MU")
@@ -205,11 +210,13 @@ class TrackArguments {
   AircraftTrackOptions resolve() const {
     AircraftTrackOptions options = options_;
     options.how.method = choice_of<TrackMethod>("--method", method_);
+    options.how.changes = choice_of<TrackChanges>("--changes", changes_);
     return options;
   }
 
  private:
   std::string method_ = std::string(to_string(TrackMethod::ekf));
+  std::string changes_ = std::string(to_string(TrackChanges::ignore));
   AircraftTrackOptions options_;
 };
 

@@ -14,6 +14,7 @@ __all__: list[str] = [
     "Calibration",
     "CataloguedEffect",
     "Certificate",
+    "Change",
     "ChannelMisfit",
     "ColumnCheck",
     "Combination",
@@ -56,6 +57,7 @@ __all__: list[str] = [
     "OptionRow",
     "Options",
     "Parameter",
+    "ParameterChange",
     "ParameterInterval",
     "Prediction",
     "PreparedFlight",
@@ -3692,6 +3694,91 @@ class SmoothedRecord:
         (N, n_x), x(k|N).
         """
 
+class ParameterChange:
+    """
+    A parameter that jumped on the way.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("name", "before", "after", "standard_deviation")
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def after(self) -> float:
+        """
+        Behind it, as estimated when it was found.
+        """
+    @property
+    def before(self) -> float:
+        """
+        Its estimate before the jump.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Of the parameter.
+        """
+    @property
+    def standard_deviation(self) -> float:
+        """
+        Of after - before.
+        """
+
+class Change:
+    """
+    Parameters that jumped at one time.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "onset",
+        "found",
+        "onset_time",
+        "found_time",
+        "statistic",
+        "parameters",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def found(self) -> int:
+        """
+        The row at which it was said.
+        """
+    @property
+    def found_time(self) -> float:
+        """
+        [s].
+        """
+    @property
+    def onset(self) -> int:
+        """
+        The row after which they jumped, to half a second or so.
+        """
+    @property
+    def onset_time(self) -> float:
+        """
+        [s]; NaN where the data have none.
+        """
+    @property
+    def parameters(self) -> tuple[ParameterChange, ...]:
+        """
+        The ParameterChange of each that jumped.
+        """
+    @property
+    def statistic(self) -> float:
+        """
+        What it explains: chi squared, of one degree a parameter, where nothing jumped.
+        """
+
 class Track:
     """
     Estimates against time, one a row.
@@ -3705,6 +3792,7 @@ class Track:
         "estimates",
         "standard_deviations",
         "innovations",
+        "changes",
         "refused",
         "not_converged",
     )
@@ -3715,6 +3803,11 @@ class Track:
     def _asdict(self) -> dict[str, typing.Any]:
         """
         {field: value}, as of a named tuple.
+        """
+    @property
+    def changes(self) -> tuple[Change, ...]:
+        """
+        The Change of every jump that was found, in their order.
         """
     @property
     def estimates(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:

@@ -233,10 +233,11 @@ class Fit:
         arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         arg4: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-        arg6: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-        arg7: sepcal._core.IterationOptions,
-        arg8: typing.SupportsFloat | typing.SupportsIndex,
-        arg9: typing.SupportsInt | typing.SupportsIndex,
+        arg6: str,
+        arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        arg8: sepcal._core.IterationOptions,
+        arg9: typing.SupportsFloat | typing.SupportsIndex,
+        arg10: typing.SupportsInt | typing.SupportsIndex,
     ) -> tuple[sepcal._core.Track, list[str]]: ...
     @property
     def equations(self) -> dict[str, list[str]]: ...
@@ -498,9 +499,10 @@ def track(
     arg6: sepcal._core.Options,
     arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     arg8: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg9: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg10: sepcal._core.IterationOptions,
-    arg11: typing.SupportsFloat | typing.SupportsIndex,
-    arg12: typing.SupportsInt | typing.SupportsIndex,
+    arg9: str,
+    arg10: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg11: sepcal._core.IterationOptions,
+    arg12: typing.SupportsFloat | typing.SupportsIndex,
+    arg13: typing.SupportsInt | typing.SupportsIndex,
 ) -> sepcal._core.Track: ...
 def two_steps(arg0: sepcal._core.Flight, arg1: Options) -> Steps: ...

@@ -393,6 +393,7 @@ class AircraftFit(Fit):
         noise: Mapping[str, float] | None = None,
         process_noise: Mapping[str, float] | None = None,
         walk: Mapping[str, float] | None = None,
+        changes: Literal["ignore", "find", "follow"] | str = "ignore",
         initial_states: Mapping[str, float] | None = None,
         row_iterations: int = 20,
         tolerance: float = 1e-8,
@@ -409,6 +410,7 @@ class AircraftFit(Fit):
             noise: Standard deviation of every output, in the first rows too [the start's].
             process_noise: As of smooth(); those not named are none.
             walk: Random walks of parameters, as of sepcal.track().
+            changes: "find" or "follow" parameters that jump, as of sepcal.track().
             initial_states: Standard deviations of states where a segment begins [as good as
                 unknown].
             row_iterations: Of iekf, at most so many a row.
@@ -436,6 +438,7 @@ class AircraftFit(Fit):
             dict(noise or {}),
             dict(process_noise or {}),
             dict(walk or {}),
+            changes,
             dict(initial_states or {}),
             _core.IterationOptions(row_iterations, tolerance),
             forgetting,

@@ -137,6 +137,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
     method: Literal["rls", "ekf", "iekf", "srif", "rml"] | str = "ekf",
     process_noise: Mapping[str, float] | None = None,
     walk: Mapping[str, float] | None = None,
+    changes: Literal["ignore", "find", "follow"] | str = "ignore",
     initial_states: Mapping[str, float] | None = None,
     row_iterations: int = 20,
     tolerance: float = 1e-8,
@@ -165,6 +166,10 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             start_rows the first rows are fitted by filter error then.
         walk: Parameters that may change on the way, {name: sd}: random walks, sd what one gathers
             in a second [unit / sqrt(s)]. Of ekf, iekf and srif.
+        changes: Of ekf, iekf and srif, a test on innovations that says when the parameters ceased
+            to hold and which of them moved. "find": the first is in `changes`, the estimates stay
+            as they are; "follow": what moved is opened from its onset on, and the next is looked
+            for.
         initial_states: Of states where a segment begins that `start_rows` hasn't fitted: {name: sd}
             [ten times the largest value of the state on the way, as good as unknown].
         row_iterations: Of iekf, at most so many a row.
@@ -230,6 +235,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             to_core(options),
             dict(process_noise or {}),
             dict(walk or {}),
+            changes,
             dict(initial_states or {}),
             _core.IterationOptions(row_iterations, tolerance),
             forgetting,

@@ -5,7 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 import sepcal
 from own_state_models import (
@@ -171,6 +171,71 @@ def test_an_aircraft_that_changes_is_followed() -> None:
     assert abs(walking["La"][-1] - 10.0) < 3 * walking.standard_deviation("La")[-1]
     assert walking.standard_deviation("La")[-1] < 1.0
     assert abs(still["La"][-1] - 10.0) > 10 * still.standard_deviation("La")[-1]
+
+
+def halved(seed: int = 5, rows: int = 1600, at: int = 800) -> dict[str, np.ndarray]:
+    """A roll mode whose aileron loses half of its power at row `at`, noise in the states."""
+    draw = np.random.default_rng(seed)
+    time = 0.05 * np.arange(rows)
+    aileron = 0.05 * np.sign(np.sin(1.7 * time)) + 0.02 * np.sin(0.31 * time)
+    p = np.zeros(rows)
+    for row in range(rows - 1):
+        power = 20.0 if row < at else 10.0
+        decay = np.exp(-2.0 * 0.05)
+        p[row + 1] = decay * p[row] + (1 - decay) / 2.0 * power * aileron[row]
+        p[row + 1] += 0.01 * np.sqrt(0.05) * draw.standard_normal()
+    return {"time": time, "aileron": aileron, "p_m": p + 0.03 + 0.01 * draw.standard_normal(rows)}
+
+
+@pytest.mark.parametrize("method", ["ekf", "iekf", "srif"])
+def test_a_jump_is_found_and_followed(method: str) -> None:
+    model = sepcal.Trajectory(RollMode(), inputs="hold")
+    given = {"start_rows": 200, "noise": {"p_m": 0.01}, "process_noise": {"p": 0.01}}
+    data = halved()
+    followed = sepcal.track(model, data, method=method, **given, changes="follow")
+    (change,) = followed.changes
+    assert 39.0 <= change.onset_time <= 41.0 <= change.found_time <= 45.0
+    assert data["time"][change.found] == change.found_time
+    (moved,) = change.parameters
+    assert moved.name == "La"
+    assert abs(moved.before - 20.0) < 1.0
+    assert abs(moved.after - 10.0) < 3 * moved.standard_deviation < 5.0
+    off = (followed["La"] - 10.0) / followed.standard_deviation("La")
+    assert np.max(np.abs(off[followed.time > 45.0])) < 3.5
+    found = sepcal.track(model, data, method=method, **given, changes="find")
+    plain = sepcal.track(model, data, method=method, **given)
+    assert [c.found for c in found.changes] == [change.found]
+    assert_array_equal(found.estimates, plain.estimates)
+    assert plain.changes == ()
+    assert (
+        sepcal.track(model, halved(at=1600), method=method, **given, changes="find").changes == ()
+    )
+
+
+@pytest.mark.parametrize("method", ["ekf", "iekf", "srif"])
+def test_a_sensor_that_jumps_is_found(method: str) -> None:
+    """A model of samples: k of z = k v + c, in a record without time: rows are counted."""
+    draw = np.random.default_rng(4)
+    v = 15.0 + 5.0 * np.sin(0.05 * np.arange(3000))
+    k = np.where(np.arange(3000) < 1500, 2.0, 2.05)
+    data = {"v": v, "z": k * v + 0.7 + 0.5 * draw.standard_normal(3000)}
+    found = sepcal.track(
+        Line(), data, start_rows=300, method=method, noise={"z": 0.5}, changes="follow"
+    )
+    (change,) = found.changes
+    assert 1475 <= change.onset <= 1525 < change.found
+    assert np.isnan(change.onset_time)
+    assert [moved.name for moved in change.parameters] == ["k"]
+    assert abs(found["k"][-1] - 2.05) < 3 * found.standard_deviation("k")[-1]
+
+
+def test_methods_that_look_for_no_change() -> None:
+    model = sepcal.Trajectory(RollMode(), inputs="hold")
+    for method in ("rls", "rml"):
+        with pytest.raises(sepcal.Error, match="changes is of ekf, iekf and srif"):
+            sepcal.track(model, halved(), start_rows=200, method=method, changes="find")
+    with pytest.raises(sepcal.Error, match="ignore.*find.*follow"):
+        sepcal.track(model, halved(), start_rows=200, changes="seek")
 
 
 def test_what_cannot_walk() -> None:

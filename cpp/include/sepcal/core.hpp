@@ -31,6 +31,7 @@
 #include "sepcal/states/iterated_update.hpp"
 #include "sepcal/states/smoother.hpp"
 #include "sepcal/states/state_model.hpp"              // a model with a state
+#include "sepcal/states/change_test.hpp"              // when parameters jump, and which
 #include "sepcal/states/joint_filter.hpp"             // states and parameters together
 #include "sepcal/states/recursive_likelihood.hpp"
 #include "sepcal/models/flight_path.hpp"

@@ -21,7 +21,26 @@ namespace {
 
 using namespace py::literals;
 
+using Changes = py::typing::Tuple<Change, py::ellipsis>;
 using Rows = Eigen::Vector<std::size_t, Eigen::Dynamic>;
+
+void define_changes(py::module_& module) {
+  BoundStruct<ParameterChange>(module, "ParameterChange", "A parameter that jumped on the way.")
+      .field("name", &ParameterChange::name, "Of the parameter.")
+      .field("before", &ParameterChange::before, "Its estimate before the jump.")
+      .field("after", &ParameterChange::after, "Behind it, as estimated when it was found.")
+      .field("standard_deviation", &ParameterChange::standard_deviation, "Of after - before.")
+      .finish();
+  BoundStruct<Change>(module, "Change", "Parameters that jumped at one time.")
+      .field("onset", &Change::onset, "The row after which they jumped, to half a second or so.")
+      .field("found", &Change::found, "The row at which it was said.")
+      .field("onset_time", &Change::onset_time, "[s]; NaN where the data have none.")
+      .field("found_time", &Change::found_time, "[s].")
+      .field("statistic", &Change::statistic,
+             "What it explains: chi squared, of one degree a parameter, where nothing jumped.")
+      .tuple("parameters", &Change::parameters, "The ParameterChange of each that jumped.")
+      .finish();
+}
 
 void define_track(py::module_& module) {
   BoundStruct<Tracked>(module, "Track", "Estimates against time, one a row.")
@@ -49,6 +68,13 @@ void define_track(py::module_& module) {
              "(M, n); 0 for what is held.")
       .field("innovations", &Tracked::track, &Track::innovations,
              "(M, n_z), reading less what was expected of it; NaN where missing.")
+      .field(
+          "changes",
+          [](const Tracked& self) -> Changes { return py::tuple(py::cast(self.track.changes)); },
+          [](Tracked& self, const Changes& changes) {
+            self.track.changes = py::cast<std::vector<Change>>(changes);
+          },
+          "The Change of every jump that was found, in their order.")
       .field("refused", &Tracked::track, &Track::refused, "Rows that were not finite, left out.")
       .field("not_converged", &Tracked::track, &Track::not_converged,
              "Rows at which the cap of iekf's iterations ended them.")
@@ -125,6 +151,7 @@ void define_innovation(py::module_& module) {
 
 void define_state_results(py::module_& module) {
   define_smoothed(module);
+  define_changes(module);
   define_track(module);
   define_innovation(module);
 }

@@ -161,18 +161,18 @@ void solve(std::size_t m, const MatrixXcd& G, double freedom, double level,
   const Index n = G.cols() - 1;
   const auto row = static_cast<Index>(m);
   // G(i, j) = mean of conj(x_i) x_j.
-  const MatrixXcd Gxx = G.topLeftCorner(n, n);
-  const VectorXcd Gxy = G.topRightCorner(n, 1);
-  const double Gyy = G(n, n).real();
-  const VectorXd scale = Gxx.diagonal().real().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  const MatrixXcd scaled = scale.asDiagonal() * Gxx * scale.asDiagonal();
+  const MatrixXcd inputs = G.topLeftCorner(n, n);
+  const VectorXcd across = G.topRightCorner(n, 1);
+  const double output = G(n, n).real();
+  const VectorXd scale = inputs.diagonal().real().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXcd scaled = scale.asDiagonal() * inputs * scale.asDiagonal();
   const MatrixXcd inverse = scale.asDiagonal() *
                             scaled.ldlt().solve(MatrixXcd::Identity(n, n)).eval() *
                             scale.asDiagonal();
-  const VectorXcd H = inverse * Gxy;
-  const double left = std::max(0.0, Gyy - (Gxy.adjoint() * H).value().real());
+  const VectorXcd H = inverse * across;
+  const double left = std::max(0.0, output - (across.adjoint() * H).value().real());
   found.response.row(row) = H.transpose();
-  found.coherence_all[row] = Gyy > 0.0 ? 1.0 - left / Gyy : 0.0;
+  found.coherence_all[row] = output > 0.0 ? 1.0 - left / output : 0.0;
   for (Index i = 0; i < n; ++i) {
     const double open = left * inverse(i, i).real();
     const double square = std::norm(H[i]);

@@ -14,6 +14,7 @@
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/iterated_update.hpp"
+#include "states/change_watch.hpp"
 #include "states/information_track.hpp"
 #include "states/known_inputs.hpp"
 #include "states/start_deviations.hpp"
@@ -148,7 +149,9 @@ class JointStream {
         density_(density_of(plan_, start, options)),
         walk_(walk_of(free_names(layout_), options)),
         R_(noise_of(plan_.tables().outputs, start, options).cwiseAbs2().asDiagonal()),
-        steps_(model.steps(record, xi_)) {
+        steps_(model.steps(record, xi_)),
+        watch_(record, free_names(layout_), n_x() + static_cast<Index>(layout_.free.size()),
+               options.changes) {
     base::deviations_in_order(plan_.model().states, options.initial_states, "state");
     for (const Variable& output : plan_.tables().outputs) {
       outputs_.push_back(record.column(output.name));
@@ -164,6 +167,7 @@ class JointStream {
     } else {
       run_in<SquareRootForm<Dynamic>>(start);
     }
+    track_.changes = std::move(watch_).changes();
     return std::move(track_);
   }
 
@@ -266,6 +270,7 @@ class JointStream {
             filter.x(), filter.form().root(), segment,
             std::max(0.0, seconds_between(record_, record_.segments()[i - 1].last - 1, row)));
         filter = Filter<Dynamic, Form>(begin.s, form_of<Form>(begin.root));
+        watch_.restart();
       }
       if (!seen) update(filter, row);
       seen = false;
@@ -316,7 +321,9 @@ class JointStream {
     }
     next.x.head(n_x()) = step.x;
     next.Phi.topRows(n_x()) = of_estimated(step.Phi);
-    return filter.predict(next);
+    const FilterStatus status = filter.predict(next);
+    if (status != FilterStatus::refused) watch_.predict(next.Phi);
+    return status;
   }
 
   MatrixXd with_walk(const MatrixXd& Q_d, double seconds) const {
@@ -334,6 +341,8 @@ class JointStream {
       StateSteps::Reading reading = steps_->read_jointly(row, s.head(n_x()));
       return {std::move(reading.z), of_estimated(reading.H)};
     };
+    const MatrixXd P = watch_.looks() ? filter.covariance() : MatrixXd();
+    const MatrixXd H = watch_.looks() ? expected(filter.x()).jacobian : MatrixXd();
     const Innovation<Dynamic> innovation =
         options_.method == TrackMethod::iekf
             ? iterated_update<Dynamic, Form, Dynamic>(filter, z, expected, R_, options_.iterations)
@@ -344,6 +353,7 @@ class JointStream {
     for (Index j = 0; j < innovation.e.size(); ++j) {
       if (std::isfinite(z[j])) e[j] = innovation.e[j];
     }
+    if (watch_.looks()) watch_.update(filter, P, H, z, innovation, row);
     keep(row, filter.x(), filter.covariance().diagonal().cwiseSqrt(), e);
   }
 
@@ -393,6 +403,7 @@ class JointStream {
   MatrixXd R_;
   std::unique_ptr<StateSteps> steps_;
   std::vector<std::span<const double>> outputs_;
+  ChangeWatch watch_;
   Track track_;
 };
 

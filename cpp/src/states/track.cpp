@@ -17,6 +17,7 @@
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/iterated_update.hpp"
+#include "states/change_watch.hpp"
 #include "states/information_track.hpp"
 #include "states/joint_track.hpp"
 #include "states/likelihood_track.hpp"
@@ -80,6 +81,10 @@ void check_of_method(const TrackOptions& options) {
   if (!options.walk.empty() &&
       (options.method == TrackMethod::rls || options.method == TrackMethod::rml)) {
     throw OptionError({Option{"walk"}, " is of ekf, iekf and srif; leave it out, or take ekf"});
+  }
+  if (options.changes != TrackChanges::ignore &&
+      (options.method == TrackMethod::rls || options.method == TrackMethod::rml)) {
+    throw OptionError({Option{"changes"}, " is of ekf, iekf and srif; leave it out, or take ekf"});
   }
   refuse(options.forgetting != by_default.forgetting, "forgetting", TrackMethod::rml);
   refuse(options.every != by_default.every, "every", TrackMethod::rml);
@@ -199,6 +204,7 @@ void track_filtered(Samples& samples, const Record& record, const StreamStart& s
   const VectorXd walk = states::walk_of(names, options);
   const bool walks = !walk.isZero(0.0);
   const MatrixXd same = MatrixXd::Identity(walk.size(), walk.size());
+  states::ChangeWatch watch(record, names, walk.size(), options.changes);
   std::optional<std::size_t> before;  // the row that the filter has seen last
   Filter<Dynamic, Form> filter(start.xi(start.free), Form::of_information_root(start.R));
   for (const auto& chunk : samples.measurements().chunks()) {
@@ -219,19 +225,22 @@ void track_filtered(Samples& samples, const Record& record, const StreamStart& s
           return {-rows.rightCols<1>(), rows.leftCols(x.size())};
         };
         const Linearisation<Dynamic, Dynamic> first = expected(filter.x());
-        const FilterStatus status =
+        const MatrixXd P = watch.looks() ? filter.covariance() : MatrixXd();
+        const Innovation<Dynamic> innovation =
             options.method == TrackMethod::iekf
                 ? iterated_update<Dynamic, Form, Dynamic>(filter, nothing, expected, unit,
                                                           options.iterations)
-                      .status
-                : filter.template update<Dynamic>(nothing, first, unit).status;
+                : filter.template update<Dynamic>(nothing, first, unit);
+        const FilterStatus status = innovation.status;
         collected.track().refused += status == FilterStatus::refused ? 1 : 0;
         collected.track().not_converged += status == FilterStatus::not_converged ? 1 : 0;
+        if (watch.looks()) watch.update(filter, P, first.jacobian, nothing, innovation, one.first);
         collected.append(one.first, filter.x(), filter.covariance().diagonal().cwiseSqrt(),
                          -first.value.cwiseProduct(samples.noise()));
       }
     }
   }
+  collected.track().changes = std::move(watch).changes();
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "sepcal/detail/states/autodiff.hpp"
 #include "sepcal/detail/states/integration.hpp"
 #include "sepcal/detail/states/step_noise.hpp"
+#include "sepcal/states/change_test.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/iterated_update.hpp"
 #include "sepcal/states/state_model.hpp"
@@ -72,6 +73,15 @@ class JointFilter {
     return filter_.update(z, outputs(u, filter_.x()), R);
   }
 
+  /// The same beside a ChangeTest<n, n - n_x> of s's parameters, which is told of it.
+  template <class Test>
+  ChangeStatus update(const Vec<Scalar, n_u>& u, const Outputs& z, const Covariance& R,
+                      Test& changes) {
+    const Linearisation<n_z, n, Scalar> expected = outputs(u, filter_.x());
+    const Matrix P = filter_.covariance();
+    return changes.update(P, expected.jacobian, z, filter_.update(z, expected, R));
+  }
+
   /// The iterated one's.
   Innovation<n_z, Scalar> update_iterated(const Vec<Scalar, n_u>& u, const Outputs& z,
                                           const Covariance& R,
@@ -82,10 +92,11 @@ class JointFilter {
 
   /// To the next row: x by the very step that a TrajectoryModel takes, Phi = dx+/d(x, p) by dual
   /// numbers through it. Q (n_w x n_w): the density of the model's noise, (unit of the table)^2;
-  /// of a model in discrete time its covariance.
+  /// of a model in discrete time its covariance. Writes Phi where it is asked for.
   template <StateModel S = M>
   FilterStatus predict(const StateRow<S, Scalar>& from, const StateRow<S, Scalar>& to,
-                       const Eigen::Matrix<Scalar, n_w, n_w>& Q, const JointStep& how = {}) {
+                       const Eigen::Matrix<Scalar, n_w, n_w>& Q, const JointStep& how = {},
+                       Matrix* Phi = nullptr) {
     const Between<M, Scalar> between(from, to, how.inputs, how.measured);
     const Vector s = filter_.x();
     const auto advance = [&]<class T>(const Vec<T, n>& at) {
@@ -103,7 +114,26 @@ class JointFilter {
       transition.Q_d.row(i).setZero();
       transition.Q_d.col(i).setZero();
     }
+    if (Phi != nullptr) *Phi = transition.Phi;
     return filter_.predict(transition);
+  }
+
+  /// The same beside a ChangeTest.
+  template <class Test, StateModel S = M>
+  FilterStatus predict(const StateRow<S, Scalar>& from, const StateRow<S, Scalar>& to,
+                       const Eigen::Matrix<Scalar, n_w, n_w>& Q, const JointStep& how,
+                       Test& changes) {
+    Matrix Phi = Matrix::Identity();
+    const FilterStatus status = predict(from, to, Q, how, &Phi);
+    if (status == FilterStatus::ok) changes.predict(Phi);
+    return status;
+  }
+
+  /// Opens what a ChangeTest found, which is forgotten there.
+  template <class Test>
+  void follow_change(Test& changes) {
+    follow(filter_, changes.jump());
+    changes.forget();
   }
 
   /// A new segment: x begins anew, independent of the past, with U_x'U_x its covariance; what is

@@ -31,6 +31,18 @@ struct ChoiceNames<TrackMethod> {
   static constexpr std::array<std::string_view, 5> names{"rls", "ekf", "iekf", "srif", "rml"};
 };
 
+/// What becomes of a parameter that jumps on the way: see ChangeTest.
+enum class TrackChanges {
+  ignore,  // nothing is looked for
+  find,    // the first is said; estimates stay as they are
+  follow   // what jumped is opened, from the onset on, and the next is looked for
+};
+
+template <>
+struct ChoiceNames<TrackChanges> {
+  static constexpr std::array<std::string_view, 3> names{"ignore", "find", "follow"};
+};
+
 struct TrackOptions {
   TrackMethod method = TrackMethod::ekf;
   /// Noise standard deviation of every output; empty: the start's. By rml these are held.
@@ -44,6 +56,9 @@ struct TrackOptions {
   /// gathers in a second [its unit / sqrt(s)], or from a row to the next where the record has no
   /// time. Of ekf, iekf and srif.
   std::map<std::string, double> walk = {};
+  /// Of ekf, iekf and srif: a test on innovations says when the parameters ceased to hold, and
+  /// which of them moved.
+  TrackChanges changes = TrackChanges::ignore;
   /// Standard deviation of states where a segment begins that no mini-batch has fitted, about the
   /// model's start(u, z); of those not named ten times the largest value that the state has on the
   /// way, as good as unknown.
@@ -51,6 +66,23 @@ struct TrackOptions {
   IterationOptions iterations = {};  // of iekf
   double forgetting = 1.0;  // of rml: what a sample counts for after the next, above 0, at most 1
   int every = 10;           // of rml: samples from a step of the parameters to the next
+};
+
+struct ParameterChange {
+  std::string name;
+  double before = 0.0;
+  double after = 0.0;
+  double standard_deviation = 0.0;  // of after - before
+};
+
+/// Parameters that jumped at one time.
+struct Change {
+  std::size_t onset = 0;  // the record's row after which they jumped, to half a second or so
+  std::size_t found = 0;  // the row at which it was said
+  double onset_time = not_a_number;  // s, of these rows; NaN where the record has none
+  double found_time = not_a_number;
+  double statistic = 0.0;  // what it explains: chi squared, of one degree a parameter, without it
+  std::vector<ParameterChange> parameters = {};
 };
 
 struct Track {
@@ -62,6 +94,7 @@ struct Track {
   Eigen::MatrixXd estimates;            // rows x n
   Eigen::MatrixXd standard_deviations;  // rows x n; 0 for what is held
   Eigen::MatrixXd innovations;          // rows x n_z: reading less what was expected; NaN: missing
+  std::vector<Change> changes;          // in their order
   std::size_t refused = 0;              // rows that were not finite, left out
   std::size_t not_converged = 0;        // rows at which iekf's cap ended it
 };

@@ -120,6 +120,27 @@ void write_csv(const TrackedAircraft& tracked, OutputFile& target) {
   }
 }
 
+namespace {
+
+json::Json changes_of(const TrackedAircraft& tracked) {
+  json::Json changes = json::Json::array();
+  for (const Change& change : tracked.track.changes) {
+    json::Json parameters = json::Json::object();
+    for (const ParameterChange& moved : change.parameters) {
+      parameters[moved.name] = {{"before", json::number(moved.before)},
+                                {"after", json::number(moved.after)},
+                                {"standard_deviation", json::number(moved.standard_deviation)}};
+    }
+    changes.push_back({{"onset_s", json::number(change.onset_time)},
+                       {"found_s", json::number(change.found_time)},
+                       {"statistic", json::number(change.statistic)},
+                       {"parameters", parameters}});
+  }
+  return changes;
+}
+
+}  // namespace
+
 std::string to_json(const TrackedAircraft& tracked) {
   using json::Json;
   const Track& track = tracked.track;
@@ -137,6 +158,7 @@ std::string to_json(const TrackedAircraft& tracked) {
                         {"rows", track.rows.size()},
                         {"refused", track.refused},
                         {"not_converged", track.not_converged},
+                        {"changes", changes_of(tracked)},
                         {"last", estimates}});
 }
 

@@ -72,9 +72,10 @@ std::optional<Fit> refit(const Calibration& calibration, PreparedFlight prepared
   try {
     Fit fit = calibrate(calibration.probe, prepared, options).fit;
     if (fit.status == FitStatus::converged) return fit;
+    return std::nullopt;
   } catch (const Error&) {  // as where smooth readings leave the model's domain
+    return std::nullopt;
   }
-  return std::nullopt;
 }
 
 /// Sum of the logarithms of the outputs' errors.

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When did the model cease to hold, and which parameter moved? The generalised likelihood ratio of
+// a filter's innovations (A. S. Willsky & H. L. Jones, A generalized likelihood ratio approach to
+// the detection and estimation of jumps in linear systems, IEEE Trans. Automatic Control 21, 1976),
+// for jumps of the parameters that a joint filter estimates. Bounded memory, no heap.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sepcal/detail/states/product.hpp"
+#include "sepcal/detail/states/triangle.hpp"
+#include "sepcal/states/filter.hpp"
+
+namespace sepcal {
+
+/// Times are in rows. The window is Onsets * rows_between.
+struct ChangeTestOptions {
+  int rows_between = 25;  // from an onset that is tried to the next
+  int confirm = 100;    // from an alarm to its verdict: an outlier's evidence fades, a jump's grows
+  double alarm = 30.0;  // (score / its deviation)^2 of one parameter at one onset
+  double join = 12.0;   // what a further parameter has to explain of the same
+  double nonlinear = 0.1;  // of a jump's size: what its linearisation may be off
+};
+
+enum class ChangeStatus {
+  holds,      // nothing speaks against the parameters
+  suspected,  // an alarm that is not confirmed yet
+  changed     // confirmed: jump() has it
+};
+
+/// A jump of some of s's last K entries.
+template <int N, int K, class Scalar = double>
+struct Jump {
+  int rows = 0;          // since the onset that explains most
+  Scalar statistic = 0;  // what the jump explains: chi squared of `count` degrees without one
+  int count = 0;         // parameters that jumped
+  Eigen::Vector<Scalar, K> size = states::zeros<Eigen::Vector<Scalar, K>>();  // 0: did not
+  Eigen::Vector<Scalar, K> deviation = states::zeros<Eigen::Vector<Scalar, K>>();
+  Eigen::Vector<Scalar, N> shift = states::zeros<Eigen::Vector<Scalar, N>>();  // of s by now
+  /// What the shift adds to the covariance of s: spread'spread.
+  Eigen::Matrix<Scalar, K, N> spread = states::zeros<Eigen::Matrix<Scalar, K, N>>();
+};
+
+/// N: entries of s, of which the last K are the parameters that may jump. A filter's predictions
+/// and updates are told row by row; every `rows_between` rows begins a hypothesis "from here on".
+///
+/// A jump d at an onset moves the mean of s - s_hat by E d: E = [0; I] there, Phi E in a
+/// prediction, (I - K H) E in an update, and the mean of the whitened innovation by G d,
+/// G = S^-T H E. Score G'w and information G'G gather; the square of a parameter's score by its
+/// information is chi squared of one degree where nothing changed and the noise is the model's.
+/// Where it isn't, as in gusts, every such square is divided by what it has been in windows of the
+/// flight before.
+template <int N, int K, class Scalar = double, int Onsets = 20>
+class ChangeTest {
+ public:
+  using State = Eigen::Vector<Scalar, N>;
+  using Matrix = Eigen::Matrix<Scalar, N, N>;
+  using Parameters = Eigen::Vector<Scalar, K>;
+  using Information = Eigen::Matrix<Scalar, K, K>;
+
+  explicit ChangeTest(const ChangeTestOptions& options = {}, Eigen::Index n = N, Eigen::Index k = K)
+      : options_(options), n_(n), k_(k), sum_(Parameters::Zero(k)) {}
+
+  /// Beside Filter::predict() by this Phi (N x N).
+  void predict(const Matrix& Phi) {
+    for (int i = 0; i < count_; ++i) at(i).E = states::product(Phi, at(i).E);
+  }
+
+  /// The states begin anew, independent of the past, as in JointFilter::restart().
+  void restart() {
+    for (int i = 0; i < count_; ++i) at(i).E.topRows(n_ - k_).setZero();
+  }
+
+  /// Beside Filter::update(): its P before the update, the outputs' derivative H (n_z x N), y (NaN
+  /// where missing), the innovation that it gave. What was refused there counts for nothing.
+  template <int NZ>
+  ChangeStatus update(const Matrix& P, const Eigen::Matrix<Scalar, NZ, N>& H,
+                      const Eigen::Vector<Scalar, NZ>& y,
+                      const Innovation<NZ, Scalar>& innovation) {
+    if (innovation.status != FilterStatus::refused) absorb(P, H, y, innovation);
+    ++rows_;
+    if (rows_ % options_.rows_between == 0) begin();
+    if (alarm_ < 0) {
+      if (rows_ >= quiet_until_ && strongest(rows_) > static_cast<Scalar>(options_.alarm))
+        alarm_ = rows_;
+    } else if (rows_ - alarm_ >= options_.confirm) {
+      if (strongest(alarm_) > static_cast<Scalar>(options_.alarm)) return ChangeStatus::changed;
+      alarm_ = -1;
+    }
+    return alarm_ < 0 ? ChangeStatus::holds : ChangeStatus::suspected;
+  }
+
+  /// Where `changed`: the onset, of those before the alarm, and the fewest parameters that explain
+  /// the innovations: those that add `join` each, the best first, and without those that the later
+  /// ones make idle.
+  Jump<N, K, Scalar> jump() const {
+    Jump<N, K, Scalar> best;
+    Scalar most = 0;
+    for (int i = 0; i < count_ && at(i).row <= alarm_; ++i) {
+      const Parameters chosen = choose(at(i));
+      const Scalar statistic = explained(at(i), chosen);
+      const Scalar worth = statistic - static_cast<Scalar>(options_.join) * chosen.sum();
+      if (worth <= most) continue;
+      most = worth;
+      best = jump_of(at(i), chosen);
+      best.statistic = statistic;
+    }
+    return best;
+  }
+
+  /// Behind a jump that was followed: its evidence is used. Parameters seldom jump: after a second
+  /// one within a window what follows is taken for the noise's, a window long.
+  void forget() {
+    const int window = Onsets * options_.rows_between;
+    if (rows_ < seldom_until_) quiet_until_ = rows_ + window;
+    seldom_until_ = rows_ + window;
+    count_ = 0;
+    alarm_ = -1;
+  }
+
+  /// How much more than white noise of the assumed size the scores scatter, at least 1, K.
+  Parameters inflation() const {
+    return ((sum_.array() + beforehand) / (windows_ + beforehand)).max(Scalar(1)).matrix();
+  }
+
+ private:
+  struct Onset {
+    int row = 0;
+    Eigen::Matrix<Scalar, N, K> E = states::zeros<Eigen::Matrix<Scalar, N, K>>();
+    Parameters score = states::zeros<Parameters>();
+    Information information = states::zeros<Information>();
+  };
+
+  static constexpr Scalar beforehand = 4;  // windows of white noise that are taken as seen
+
+  Onset& at(int i) { return ring_[static_cast<std::size_t>((first_ + i) % Onsets)]; }
+  const Onset& at(int i) const { return ring_[static_cast<std::size_t>((first_ + i) % Onsets)]; }
+
+  /// The oldest makes room, unless it is what an alarm is about.
+  void begin() {
+    if (count_ == Onsets) {
+      if (alarm_ < 0) {
+        const Onset& old = at(0);
+        for (Eigen::Index j = 0; j < k_; ++j) sum_[j] += square(old, j) / Scalar(Onsets);
+        windows_ += Scalar(1) / Scalar(Onsets);
+      }
+      first_ = (first_ + 1) % Onsets;
+      --count_;
+    }
+    Onset& onset = at(count_++);
+    onset.row = rows_;
+    onset.E.setZero(n_, k_);
+    onset.E.bottomRows(k_).setIdentity();
+    onset.score.setZero(k_);
+    onset.information.setZero(k_, k_);
+  }
+
+  template <int NZ>
+  void absorb(const Matrix& P, const Eigen::Matrix<Scalar, NZ, N>& H,
+              const Eigen::Vector<Scalar, NZ>& y, const Innovation<NZ, Scalar>& innovation) {
+    Eigen::Matrix<Scalar, NZ, N> seen = H;
+    for (Eigen::Index j = 0; j < y.size(); ++j) {
+      if (std::isnan(y[j])) seen.row(j).setZero();
+    }
+    const Eigen::Matrix<Scalar, NZ, N> whitened = states::solve_transposed(innovation.S, seen);
+    const Eigen::Matrix<Scalar, N, NZ> gain = states::product(P, whitened.transpose());
+    for (int i = 0; i < count_; ++i) {
+      Onset& onset = at(i);
+      const Eigen::Matrix<Scalar, NZ, K> G = states::product(whitened, onset.E);
+      onset.E -= states::product(gain, G);
+      onset.score += states::product(G.transpose(), innovation.w);
+      onset.information += states::product(G.transpose(), G);
+    }
+  }
+
+  static Scalar square(const Onset& onset, Eigen::Index j) {
+    const Scalar information = onset.information(j, j);
+    return information > 0 ? onset.score[j] * onset.score[j] / information : Scalar(0);
+  }
+
+  /// Of onsets until this row.
+  Scalar strongest(int until) const {
+    const Parameters by = inflation().cwiseInverse();
+    Scalar most = 0;
+    for (int i = 0; i < count_ && at(i).row <= until; ++i) {
+      for (Eigen::Index j = 0; j < k_; ++j) most = std::max(most, square(at(i), j) * by[j]);
+    }
+    return most;
+  }
+
+  /// Scores at the assumed scatter; of parameters that are not chosen the identity, which tells
+  /// nothing.
+  struct Chosen {
+    Parameters score;
+    Information root;
+
+    Chosen(const Onset& onset, const Parameters& chosen, const Parameters& inflation)
+        : score(onset.score.cwiseQuotient(inflation.cwiseSqrt()).cwiseProduct(chosen)) {
+      Information information = onset.information;
+      for (Eigen::Index j = 0; j < chosen.size(); ++j) {
+        if (chosen[j] != Scalar(0)) continue;
+        information.row(j).setZero();
+        information.col(j).setZero();
+        information(j, j) = 1;
+      }
+      root = states::upper_root(information);
+    }
+  };
+
+  Scalar explained(const Onset& onset, const Parameters& chosen) const {
+    const Chosen of(onset, chosen, inflation());
+    if (!states::is_regular(of.root)) return 0;
+    return states::solve_transposed(of.root, of.score).squaredNorm();
+  }
+
+  /// 1 of those that jumped, 0 of the others.
+  Parameters choose(const Onset& onset) const {
+    Parameters chosen = Parameters::Zero(k_);
+    Scalar reached = 0;
+    for (Eigen::Index step = 0; step < k_; ++step) {
+      Eigen::Index best = -1;
+      Scalar most = reached + static_cast<Scalar>(options_.join);
+      for (Eigen::Index j = 0; j < k_; ++j) {
+        if (chosen[j] != Scalar(0)) continue;
+        chosen[j] = 1;
+        const Scalar with = explained(onset, chosen);
+        chosen[j] = 0;
+        if (with <= most) continue;
+        most = with;
+        best = j;
+      }
+      if (best < 0) break;
+      chosen[best] = 1;
+      reached = most;
+      for (Eigen::Index j = 0; j < k_; ++j) {
+        if (chosen[j] == Scalar(0) || j == best) continue;
+        chosen[j] = 0;
+        const Scalar without = explained(onset, chosen);
+        if (reached - without < static_cast<Scalar>(options_.join)) {
+          reached = without;
+        } else {
+          chosen[j] = 1;
+        }
+      }
+    }
+    return chosen;
+  }
+
+  Jump<N, K, Scalar> jump_of(const Onset& onset, const Parameters& chosen) const {
+    const Parameters scatter = inflation().cwiseSqrt();
+    const Chosen plain(onset, chosen, Parameters::Ones(k_));
+    Jump<N, K, Scalar> jump;
+    jump.rows = rows_ - onset.row;
+    jump.count = static_cast<int>(chosen.sum());
+    jump.size = states::solve_upper(plain.root, states::solve_transposed(plain.root, plain.score));
+    // Rows whose products are the sizes' covariance, and what the linearisation may be off.
+    Information rows =
+        states::solve_transposed(plain.root, Information(Information::Identity(k_, k_))) *
+        chosen.cwiseProduct(scatter).asDiagonal();
+    Information U = Information::Zero(k_, k_);
+    U.diagonal() = static_cast<Scalar>(options_.nonlinear) * jump.size;
+    states::absorb_rows(U, rows);
+    jump.deviation = U.colwise().norm();
+    jump.shift = states::product(onset.E, jump.size);
+    jump.spread = states::product(U, onset.E.transpose());
+    return jump;
+  }
+
+  ChangeTestOptions options_;
+  Eigen::Index n_;
+  Eigen::Index k_;
+  std::array<Onset, Onsets> ring_ = {};
+  int first_ = 0;
+  int count_ = 0;
+  int rows_ = 0;
+  int alarm_ = -1;        // the row of the alarm; -1: none
+  int seldom_until_ = 0;  // another jump until then is the second within a window
+  int quiet_until_ = 0;   // no alarm until then
+  Parameters sum_;        // of squares at the ends of windows, in windows
+  Scalar windows_ = 0;
+};
+
+/// Lets a jump into a filter: s moves by it, and its covariance opens by what is not known of it.
+template <int N, class Form, int K>
+void follow(Filter<N, Form>& filter, const Jump<N, K, typename Form::Matrix::Scalar>& jump) {
+  auto U = filter.form().root();
+  auto rows = jump.spread;
+  states::absorb_rows(U, rows);
+  filter = Filter<N, Form>(filter.x() + jump.shift, Form::of_covariance_root(U));
+}
+
+}  // namespace sepcal

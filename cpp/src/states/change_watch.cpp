@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "states/change_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "states/joint_track.hpp"
+
+namespace sepcal::states {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double between_onsets = 0.5;  // s
+constexpr double to_confirm = 2.0;      // s
+
+/// The mean time from a row to the next [s]; 0 where there are none, or no time.
+double mean_step(const Record& record) {
+  double seconds = 0.0;
+  std::size_t steps = 0;
+  for (const Segment& segment : record.segments()) {
+    seconds += seconds_between(record, segment.first, segment.last - 1);
+    steps += segment.last - 1 - segment.first;
+  }
+  return record.has("time") && steps > 0 ? seconds / static_cast<double>(steps) : 0.0;
+}
+
+/// In rows of this record; of one without time as if they were 0.02 s apart.
+ChangeTestOptions options_for(const Record& record) {
+  ChangeTestOptions options;
+  const double step = mean_step(record);
+  if (!(step > 0.0)) return options;
+  options.rows_between = std::max(1, static_cast<int>(std::lround(between_onsets / step)));
+  options.confirm = std::max(1, static_cast<int>(std::lround(to_confirm / step)));
+  return options;
+}
+
+}  // namespace
+
+ChangeWatch::ChangeWatch(const Record& record, std::vector<std::string> names, Index n,
+                         TrackChanges what)
+    : record_(record), names_(std::move(names)), what_(what) {
+  if (what_ == TrackChanges::ignore || names_.empty()) return;
+  test_.emplace(options_for(record), n, static_cast<Index>(names_.size()));
+}
+
+void ChangeWatch::predict(const Eigen::MatrixXd& Phi) {
+  if (test_) test_->predict(Phi);
+}
+
+void ChangeWatch::restart() {
+  if (test_) test_->restart();
+}
+
+Change ChangeWatch::change_of(const Jump<Eigen::Dynamic, Eigen::Dynamic>& jump,
+                              const VectorXd& s) const {
+  const auto k = static_cast<Index>(names_.size());
+  const VectorXd after = (s + jump.shift).tail(k);
+  const std::size_t last = rows_.size() - 1;
+  const std::size_t back = std::min(last, static_cast<std::size_t>(jump.rows));
+  Change change{.onset = rows_[last - back], .found = rows_[last], .statistic = jump.statistic};
+  if (record_.has("time")) {
+    change.onset_time = record_.column("time")[change.onset];
+    change.found_time = record_.column("time")[change.found];
+  }
+  for (Index j = 0; j < k; ++j) {
+    if (jump.size[j] == 0.0) continue;
+    change.parameters.push_back({.name = names_[static_cast<std::size_t>(j)],
+                                 .before = after[j] - jump.size[j],
+                                 .after = after[j],
+                                 .standard_deviation = jump.deviation[j]});
+  }
+  return change;
+}
+
+}  // namespace sepcal::states
