@@ -234,7 +234,7 @@ def test_methods_that_look_for_no_change() -> None:
     for method in ("rls", "rml"):
         with pytest.raises(sepcal.Error, match="changes is of ekf, iekf and srif"):
             sepcal.track(model, halved(), start_rows=200, method=method, changes="find")
-    with pytest.raises(sepcal.Error, match="ignore.*find.*follow"):
+    with pytest.raises(sepcal.Error, match=r"ignore.*find.*follow"):
         sepcal.track(model, halved(), start_rows=200, changes="seek")
 
 
