@@ -14,6 +14,7 @@
 #include "sepcal/fit.hpp"
 #include "simulation_arguments.hpp"
 #include "tables.hpp"
+#include "track_arguments.hpp"
 #include "verbs.hpp"
 
 namespace sepcal::app {
@@ -103,6 +104,7 @@ class CommandLine {
         diagnose_(add_later_verb("diagnose", "names the physical effect that is missing")),
         add_(add_later_verb("add", "adds a physical effect and fits again")),
         apply_(add_later_verb("apply", "adds the calibrated readings to a log", false)),
+        track_(add_later_verb("track", "estimates parameters row by row, as in flight", false)),
         export_(cli.add_subcommand("export", "writes what a vehicle loads of a calibration")),
         join_(cli.add_subcommand("join", "brings another log's columns to a sensor's rows")),
         simulate_(cli.add_subcommand("simulate", "makes a flight whose truth is known")) {
@@ -146,6 +148,11 @@ class CommandLine {
     add_adding_options(*add_, typed_);
     instrument.add_flight_options(*add_);
     add_applying_options(*apply_, typed_);
+    instrument.add_flight_options(*track_);
+    tracking_.add_to_sensor(*track_);
+    add_file(*track_, "-o,--output", typed_.output, "writes the estimates there")
+        ->type_name("TRACK.csv")
+        ->required();
 
     add_exporting_options(*export_, typed_);
     exporting_.add_to(*export_);
@@ -168,6 +175,7 @@ class CommandLine {
     if (intervals_->parsed()) return verbs.intervals(intervals_asked_.resolve());
     if (add_->parsed()) return verbs.add();
     if (apply_->parsed()) return verbs.apply();
+    if (track_->parsed()) return verbs.track(tracking_.resolve());
     if (export_->parsed()) return verbs.export_to(exporting_.resolve());
     if (join_->parsed()) return verbs.join();
     if (simulate_->parsed()) return verbs.simulate(simulation_.resolve());
@@ -220,6 +228,7 @@ class CommandLine {
   DiagnoseArguments diagnosis_;
   IntervalArguments intervals_asked_;
   ExportArguments exporting_;
+  TrackArguments tracking_;
   CLI::App* check_;
   CLI::App* fit_;
   CLI::App* compare_;
@@ -228,6 +237,7 @@ class CommandLine {
   CLI::App* diagnose_;
   CLI::App* add_;
   CLI::App* apply_;
+  CLI::App* track_;
   CLI::App* export_;
   CLI::App* join_;
   CLI::App* simulate_;

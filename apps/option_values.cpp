@@ -84,4 +84,24 @@ void add_more_flights(CLI::App& verb, std::vector<std::string>& files, const std
   });
 }
 
+void add_deviations(CLI::App& verb, const std::string& name, std::vector<std::string>& texts,
+                    const std::string& description) {
+  verb.add_option(name, texts, description)
+      ->type_name("NAME=SD")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+std::map<std::string, double> parse_deviations(const std::string& option,
+                                               const std::vector<std::string>& texts) {
+  std::map<std::string, double> deviations;
+  for (const std::string& text : texts) {
+    const auto [name, value] = parse_assignment(option, text, "NAME=SD");
+    if (!deviations.emplace(name, parse_value(option, value)).second) {
+      throw Error(fmt::format("{} {} is given twice", option, name));
+    }
+  }
+  return deviations;
+}
+
 }  // namespace sepcal::app

@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 
 #include "flight/schema/typed_options.hpp"
@@ -43,6 +44,14 @@ CLI::Option* add_whole_number(CLI::App& verb, const std::string& name, T& value,
       ->type_name("N")
       ->default_str(std::to_string(value));
 }
+
+/// An option NAME=SD, which may be repeated.
+void add_deviations(CLI::App& verb, const std::string& name, std::vector<std::string>& texts,
+                    const std::string& description);
+
+/// What such an option was given. Throws Error for what is no pair, and for a name twice.
+std::map<std::string, double> parse_deviations(const std::string& option,
+                                               const std::vector<std::string>& texts);
 
 /// An option or argument that names a file; an empty name (an unset variable of the shell) is
 /// refused. "-" is standard output for --output, and standard input for an argument.

@@ -28,6 +28,7 @@
 #include "simulation_arguments.hpp"
 #include "tables.hpp"
 #include "terminal.hpp"
+#include "track_arguments.hpp"
 
 namespace sepcal::app {
 using base::page;
@@ -181,45 +182,6 @@ class ModelArguments {
   AircraftOptions options_;
 };
 
-/// How a track is run.
-class TrackArguments {
- public:
-  void add_to(CLI::App& verb) {
-    verb.add_option("--method", method_,
-                    "rls: recursive least squares linearised at the start; ekf, iekf: the extended "
-                    "and the iterated extended filter; srif: as square-root information; rml: "
-                    "recursive maximum likelihood, which estimates the noises' sizes too")
-        ->type_name("HOW")
-        ->capture_default_str();
-    verb.add_option("--changes", changes_,
-                    "of ekf, iekf, srif, parameters that jump on the way: ignore; find the first "
-                    "and say when and which; follow: open what moved and go on")
-        ->type_name("HOW")
-        ->capture_default_str();
-    verb.add_option("--forgetting", options_.how.forgetting,
-                    "of rml: what a sample counts for after the next")
-        ->type_name("MU")
-        ->capture_default_str();
-    add_whole_number(verb, "--every", options_.how.every,
-                     "of rml: samples from a step of the parameters to the next");
-    add_whole_number(verb, "--start-rows", options_.start_rows,
-                     "fits so many first rows, and goes on after them; 0: starts from the fit, of "
-                     "another flight");
-  }
-
-  AircraftTrackOptions resolve() const {
-    AircraftTrackOptions options = options_;
-    options.how.method = choice_of<TrackMethod>("--method", method_);
-    options.how.changes = choice_of<TrackChanges>("--changes", changes_);
-    return options;
-  }
-
- private:
-  std::string method_ = std::string(to_string(TrackMethod::ekf));
-  std::string changes_ = std::string(to_string(TrackChanges::ignore));
-  AircraftTrackOptions options_;
-};
-
 /// A frequency response from columns to a column.
 class ResponseArguments {
  public:
@@ -325,26 +287,6 @@ class DesignArguments {
   StepsOptions steps_;
 };
 
-void add_deviations(CLI::App& verb, const std::string& name, std::vector<std::string>& texts,
-                    const std::string& description) {
-  verb.add_option(name, texts, description)
-      ->type_name("NAME=SD")
-      ->take_all()
-      ->allow_extra_args(false);
-}
-
-std::map<std::string, double> parse_deviations(const std::string& option,
-                                               const std::vector<std::string>& texts) {
-  std::map<std::string, double> deviations;
-  for (const std::string& text : texts) {
-    const auto [name, value] = parse_assignment(option, text, "NAME=SD");
-    if (!deviations.emplace(name, parse_value(option, value)).second) {
-      throw Error(fmt::format("{} {} is given twice", option, name));
-    }
-  }
-  return deviations;
-}
-
 class AircraftApp {
  public:
   explicit AircraftApp(CLI::App& cli)
@@ -395,8 +337,6 @@ class AircraftApp {
           "repeated");
     }
     tracking_.add_to(track_);
-    add_deviations(track_, "--walk", walk_,
-                   "lets a parameter change on the way, a random walk of SD [unit/sqrt(s)]");
     add_deviations(track_, "--initial-state", initial_states_,
                    "standard deviation of a state where a segment begins; else as good as "
                    "unknown; may be repeated");
@@ -600,13 +540,12 @@ class AircraftApp {
   int track() const {
     check_not_input(wishes_.output, base_);
     check_not_input(wishes_.output, flight_);
-    AircraftTrackOptions options = tracking_.resolve();
+    FlightTrackOptions options = tracking_.resolve();
     options.how.process_noise = parse_deviations("--process-noise", process_noise_);
-    options.how.walk = parse_deviations("--walk", walk_);
     options.how.initial_states = parse_deviations("--initial-state", initial_states_);
     const AircraftFit base = read_aircraft_fit(base_);
     OutputFile output(wishes_.output);
-    const TrackedAircraft tracked =
+    const TrackedFlight tracked =
         track_aircraft(base, read_flight(base.options.calibration.log), options);
     tell_notes(tracked.notes);
     deliver_table(tracked, output);
@@ -672,7 +611,6 @@ class AircraftApp {
   std::string geometry_;
   std::vector<std::string> process_noise_;
   std::vector<std::string> initial_states_;
-  std::vector<std::string> walk_;
   ModelArguments model_;
   TrackArguments tracking_;
   FitArguments fit_arguments_;

@@ -210,6 +210,20 @@ int Verbs::apply() const {
   return 0;
 }
 
+int Verbs::track(const FlightTrackOptions& options) const {
+  for (const std::string& file : input_files()) check_not_input(arguments_.output, file);
+  OutputFile output(arguments_.output);
+  const Calibration calibration = read_base();
+  const TrackedFlight tracked =
+      sepcal::track(calibration, read_flight(calibration.options.log), options);
+  write_csv(tracked, output);
+  output.commit();
+  tell_notes(tracked.notes);
+  give(arguments_.json, to_json(tracked),
+       to_text(tracked) + page("wrote {}\n", arguments_.output).text());
+  return 0;
+}
+
 int Verbs::export_to(ExportOptions options) const {
   check_not_input(arguments_.output, arguments_.calibration);
   const Calibration calibration = read_base();

@@ -11,6 +11,7 @@
 #include "sepcal/flight/calibration.hpp"
 #include "sepcal/flight/export.hpp"
 #include "sepcal/flight/joined_rates.hpp"
+#include "sepcal/flight/track.hpp"
 #include "sepcal/profile.hpp"
 
 namespace sepcal::app {
@@ -49,6 +50,7 @@ class Verbs {
   int diagnose(const DiagnoseArguments& asked) const;
   int add() const;
   int apply() const;
+  int track(const FlightTrackOptions& options) const;
   /// To the file of -o; `export` is a word of C++.
   int export_to(ExportOptions options) const;
   int simulate(SimulationOrder order) const;

@@ -39,6 +39,7 @@ __all__: list[str] = [
     "FlightDeparture",
     "FlightFigures",
     "FlightFit",
+    "FlightTrackOptions",
     "HauptKasdinFit",
     "HistoryEntry",
     "Injection",
@@ -2649,6 +2650,325 @@ class Diagnosis:
         What was done.
         """
 
+class SmoothedRecord:
+    """
+    States and process noise, given all samples; NaN outside segments.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "states",
+        "noises",
+        "outputs",
+        "x",
+        "covariance",
+        "w",
+        "w_covariance",
+        "innovations",
+        "innovation_sd",
+        "cost",
+        "readings",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: SmoothedRecord) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        Sum of (e' Lambda^-1 e + ln det Lambda) / 2.
+        """
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (N, n_x, n_x), P(k|N).
+        """
+    @property
+    def innovation_sd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), expected of them.
+        """
+    @property
+    def innovations(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_z), measured less predicted from the rows before; NaN where missing.
+        """
+    @property
+    def noises(self) -> tuple[str, ...]:
+        """
+        n_w.
+        """
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """
+        n_z.
+        """
+    @property
+    def readings(self) -> int:
+        """
+        Outputs that were there.
+        """
+    @property
+    def states(self) -> tuple[str, ...]:
+        """
+        That are integrated, n_x.
+        """
+    @property
+    def w(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_w), w(k|N): its mean from row k to the next.
+        """
+    @property
+    def w_covariance(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (N, n_w, n_w), Q(k|N).
+        """
+    @property
+    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n_x), x(k|N).
+        """
+
+class ParameterChange:
+    """
+    A parameter that jumped on the way.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("name", "before", "after", "standard_deviation", "rivals")
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def after(self) -> float:
+        """
+        Behind it, as estimated when it was found.
+        """
+    @property
+    def before(self) -> float:
+        """
+        Its estimate before the jump.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Of the parameter.
+        """
+    @property
+    def rivals(self) -> tuple[str, ...]:
+        """
+        Parameters whose jump in its place would explain the innovations nearly as well.
+        """
+    @property
+    def standard_deviation(self) -> float:
+        """
+        Of after - before.
+        """
+
+class Change:
+    """
+    Parameters that jumped at one time.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "onset",
+        "found",
+        "onset_time",
+        "found_time",
+        "statistic",
+        "parameters",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def found(self) -> int:
+        """
+        The row at which it was said.
+        """
+    @property
+    def found_time(self) -> float:
+        """
+        [s].
+        """
+    @property
+    def onset(self) -> int:
+        """
+        The row after which they jumped, to half a second or so.
+        """
+    @property
+    def onset_time(self) -> float:
+        """
+        [s]; NaN where the data have none.
+        """
+    @property
+    def parameters(self) -> tuple[ParameterChange, ...]:
+        """
+        The ParameterChange of each that jumped.
+        """
+    @property
+    def statistic(self) -> float:
+        """
+        What it explains: chi squared, of one degree a parameter, where nothing jumped.
+        """
+
+class Track:
+    """
+    Estimates against time, one a row.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "names",
+        "outputs",
+        "rows",
+        "time",
+        "estimates",
+        "standard_deviations",
+        "innovations",
+        "changes",
+        "refused",
+        "not_converged",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Track) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def changes(self) -> tuple[Change, ...]:
+        """
+        The Change of every jump that was found, in their order.
+        """
+    @property
+    def estimates(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (M, n).
+        """
+    @property
+    def innovations(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (M, n_z), reading less what was expected of it; NaN where missing.
+        """
+    @property
+    def names(self) -> tuple[str, ...]:
+        """
+        Of the n states that are integrated, then of the parameters, linear ones first.
+        """
+    @property
+    def not_converged(self) -> int:
+        """
+        Rows at which the cap of iekf's iterations ended them.
+        """
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """
+        n_z.
+        """
+    @property
+    def refused(self) -> int:
+        """
+        Rows that were not finite, left out.
+        """
+    @property
+    def rows(self) -> typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"]:
+        """
+        (M,) of the data, one an estimate.
+        """
+    @property
+    def standard_deviations(
+        self,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (M, n); 0 for what is held.
+        """
+    @property
+    def time(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (M,) [s]; empty where the data have none.
+        """
+
+class IterationOptions:
+    def __init__(
+        self,
+        iterations: typing.SupportsInt | typing.SupportsIndex,
+        tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+
+class FlightTrackOptions:
+    def __init__(
+        self,
+        *,
+        method: str,
+        noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        process_noise: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        walk: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        changes: str,
+        initial_states: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        iterations: IterationOptions,
+        forgetting: typing.SupportsFloat | typing.SupportsIndex,
+        every: typing.SupportsInt | typing.SupportsIndex,
+        start_rows: typing.SupportsInt | typing.SupportsIndex,
+        own: collections.abc.Sequence[str],
+    ) -> None: ...
+
+class Innovation:
+    """
+    What a measurement brought that was not expected.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("count", "e", "w", "root")
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: Innovation) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def cost(self) -> float:
+        """
+        (e' Lambda^-1 e + ln det Lambda) / 2.
+        """
+    @property
+    def count(self) -> int:
+        """
+        Outputs that were there.
+        """
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n_z, n_z); the identity in rows of missing outputs.
+        """
+    @property
+    def e(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n_z,), y - expected; 0 where missing.
+        """
+    @property
+    def root(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n_z, n_z), upper triangular root of its covariance.
+        """
+    @property
+    def w(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n_z,), e in standard deviations, uncorrelated.
+        """
+
 class Flight:
     def __getstate__(
         self,
@@ -2909,6 +3229,7 @@ class Calibration:
     ) -> tuple[list[tuple[str, numpy.typing.NDArray[numpy.float64]]], list[str]]: ...
     def save(self, arg0: str) -> None: ...
     def to_json(self) -> str: ...
+    def track(self, arg0: Flight, arg1: FlightTrackOptions) -> tuple[Track, list[str]]: ...
     @property
     def departures(self) -> list[FlightDeparture]: ...
     @property
@@ -3611,303 +3932,6 @@ class PreparedFlight:
         int,
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     ]: ...
-
-class SmoothedRecord:
-    """
-    States and process noise, given all samples; NaN outside segments.
-    """
-
-    _fields: typing.ClassVar[tuple] = (
-        "states",
-        "noises",
-        "outputs",
-        "x",
-        "covariance",
-        "w",
-        "w_covariance",
-        "innovations",
-        "innovation_sd",
-        "cost",
-        "readings",
-    )
-    def __getstate__(self) -> tuple: ...
-    def __init__(self, arg0: SmoothedRecord) -> None: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-    def _asdict(self) -> dict[str, typing.Any]:
-        """
-        {field: value}, as of a named tuple.
-        """
-    @property
-    def cost(self) -> float:
-        """
-        Sum of (e' Lambda^-1 e + ln det Lambda) / 2.
-        """
-    @property
-    def covariance(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (N, n_x, n_x), P(k|N).
-        """
-    @property
-    def innovation_sd(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (N, n_z), expected of them.
-        """
-    @property
-    def innovations(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (N, n_z), measured less predicted from the rows before; NaN where missing.
-        """
-    @property
-    def noises(self) -> tuple[str, ...]:
-        """
-        n_w.
-        """
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """
-        n_z.
-        """
-    @property
-    def readings(self) -> int:
-        """
-        Outputs that were there.
-        """
-    @property
-    def states(self) -> tuple[str, ...]:
-        """
-        That are integrated, n_x.
-        """
-    @property
-    def w(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (N, n_w), w(k|N): its mean from row k to the next.
-        """
-    @property
-    def w_covariance(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (N, n_w, n_w), Q(k|N).
-        """
-    @property
-    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (N, n_x), x(k|N).
-        """
-
-class ParameterChange:
-    """
-    A parameter that jumped on the way.
-    """
-
-    _fields: typing.ClassVar[tuple] = ("name", "before", "after", "standard_deviation")
-    def __getstate__(self) -> tuple: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-    def _asdict(self) -> dict[str, typing.Any]:
-        """
-        {field: value}, as of a named tuple.
-        """
-    @property
-    def after(self) -> float:
-        """
-        Behind it, as estimated when it was found.
-        """
-    @property
-    def before(self) -> float:
-        """
-        Its estimate before the jump.
-        """
-    @property
-    def name(self) -> str:
-        """
-        Of the parameter.
-        """
-    @property
-    def standard_deviation(self) -> float:
-        """
-        Of after - before.
-        """
-
-class Change:
-    """
-    Parameters that jumped at one time.
-    """
-
-    _fields: typing.ClassVar[tuple] = (
-        "onset",
-        "found",
-        "onset_time",
-        "found_time",
-        "statistic",
-        "parameters",
-    )
-    def __getstate__(self) -> tuple: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-    def _asdict(self) -> dict[str, typing.Any]:
-        """
-        {field: value}, as of a named tuple.
-        """
-    @property
-    def found(self) -> int:
-        """
-        The row at which it was said.
-        """
-    @property
-    def found_time(self) -> float:
-        """
-        [s].
-        """
-    @property
-    def onset(self) -> int:
-        """
-        The row after which they jumped, to half a second or so.
-        """
-    @property
-    def onset_time(self) -> float:
-        """
-        [s]; NaN where the data have none.
-        """
-    @property
-    def parameters(self) -> tuple[ParameterChange, ...]:
-        """
-        The ParameterChange of each that jumped.
-        """
-    @property
-    def statistic(self) -> float:
-        """
-        What it explains: chi squared, of one degree a parameter, where nothing jumped.
-        """
-
-class Track:
-    """
-    Estimates against time, one a row.
-    """
-
-    _fields: typing.ClassVar[tuple] = (
-        "names",
-        "outputs",
-        "rows",
-        "time",
-        "estimates",
-        "standard_deviations",
-        "innovations",
-        "changes",
-        "refused",
-        "not_converged",
-    )
-    def __getstate__(self) -> tuple: ...
-    def __init__(self, arg0: Track) -> None: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-    def _asdict(self) -> dict[str, typing.Any]:
-        """
-        {field: value}, as of a named tuple.
-        """
-    @property
-    def changes(self) -> tuple[Change, ...]:
-        """
-        The Change of every jump that was found, in their order.
-        """
-    @property
-    def estimates(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (M, n).
-        """
-    @property
-    def innovations(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (M, n_z), reading less what was expected of it; NaN where missing.
-        """
-    @property
-    def names(self) -> tuple[str, ...]:
-        """
-        Of the n states that are integrated, then of the parameters, linear ones first.
-        """
-    @property
-    def not_converged(self) -> int:
-        """
-        Rows at which the cap of iekf's iterations ended them.
-        """
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """
-        n_z.
-        """
-    @property
-    def refused(self) -> int:
-        """
-        Rows that were not finite, left out.
-        """
-    @property
-    def rows(self) -> typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"]:
-        """
-        (M,) of the data, one an estimate.
-        """
-    @property
-    def standard_deviations(
-        self,
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (M, n); 0 for what is held.
-        """
-    @property
-    def time(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (M,) [s]; empty where the data have none.
-        """
-
-class IterationOptions:
-    def __init__(
-        self,
-        iterations: typing.SupportsInt | typing.SupportsIndex,
-        tolerance: typing.SupportsFloat | typing.SupportsIndex,
-    ) -> None: ...
-
-class Innovation:
-    """
-    What a measurement brought that was not expected.
-    """
-
-    _fields: typing.ClassVar[tuple] = ("count", "e", "w", "root")
-    def __getstate__(self) -> tuple: ...
-    def __init__(self, arg0: Innovation) -> None: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: tuple) -> None: ...
-    def _asdict(self) -> dict[str, typing.Any]:
-        """
-        {field: value}, as of a named tuple.
-        """
-    @property
-    def cost(self) -> float:
-        """
-        (e' Lambda^-1 e + ln det Lambda) / 2.
-        """
-    @property
-    def count(self) -> int:
-        """
-        Outputs that were there.
-        """
-    @property
-    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (n_z, n_z); the identity in rows of missing outputs.
-        """
-    @property
-    def e(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        (n_z,), y - expected; 0 where missing.
-        """
-    @property
-    def root(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (n_z, n_z), upper triangular root of its covariance.
-        """
-    @property
-    def w(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        (n_z,), e in standard deviations, uncorrelated.
-        """
 
 def accelerometer() -> Model: ...
 def angles_of_quaternion(

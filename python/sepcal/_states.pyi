@@ -226,18 +226,7 @@ class Fit:
     ) -> sepcal._core.SmoothedRecord: ...
     def to_json(self) -> str: ...
     def track(
-        self,
-        arg0: sepcal._core.Flight,
-        arg1: str,
-        arg2: typing.SupportsInt | typing.SupportsIndex,
-        arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-        arg4: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-        arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-        arg6: str,
-        arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-        arg8: sepcal._core.IterationOptions,
-        arg9: typing.SupportsFloat | typing.SupportsIndex,
-        arg10: typing.SupportsInt | typing.SupportsIndex,
+        self, arg0: sepcal._core.Flight, arg1: sepcal._core.FlightTrackOptions
     ) -> tuple[sepcal._core.Track, list[str]]: ...
     @property
     def equations(self) -> dict[str, list[str]]: ...

@@ -26,7 +26,7 @@ from sepcal.results import Fit
 from sepcal.smoothing import Smoothed
 from sepcal.states_module import states_module
 from sepcal.stepwise import Stepwise, diagnosis_options, to_injected
-from sepcal.tracking import Track
+from sepcal.tracking import Track, track_options
 from sepcal.trajectories import FlightPath
 from sepcal.whole_files import name_of
 
@@ -431,20 +431,21 @@ class AircraftFit(Fit):
             True
         """
         chosen = self._or_fitted(flight, "track(")
-        core, _ = self.core.track(
-            chosen._core,
-            method,
-            start_rows,
-            dict(noise or {}),
-            dict(process_noise or {}),
-            dict(walk or {}),
-            changes,
-            dict(initial_states or {}),
-            _core.IterationOptions(row_iterations, tolerance),
-            forgetting,
-            every,
+        options = track_options(
+            method=method,
+            noise=noise,
+            process_noise=process_noise,
+            walk=walk,
+            changes=changes,
+            initial_states=initial_states,
+            row_iterations=row_iterations,
+            tolerance=tolerance,
+            forgetting=forgetting,
+            every=every,
+            start_rows=start_rows,
         )
-        return Track(core, self._units_on(chosen))
+        core, notes = self.core.track(chosen._core, options)
+        return Track(core, self._units_on(chosen), notes)
 
     def plot(
         self,

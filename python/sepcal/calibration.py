@@ -26,6 +26,7 @@ from sepcal.own_state_model import AnyModel, to_own
 from sepcal.plots import Backend, Theme
 from sepcal.results import Fit
 from sepcal.stepwise import Stepwise, diagnosis_options, to_injected
+from sepcal.tracking import Track, track_options
 from sepcal.whole_files import name_of
 
 if TYPE_CHECKING:
@@ -177,6 +178,67 @@ class Calibration(Fit):
         core, chosen = self._on(flight, "residuals(", known=True)
         columns, why_not = core.residuals(chosen._core)
         return {**dict(columns), "why_not": why_not}
+
+    def track(
+        self,
+        flight: AnyFlight | None = None,
+        *,
+        start_rows: int = 0,
+        own: Sequence[str] = (),
+        method: Literal["rls", "ekf", "iekf", "srif"] | str = "ekf",
+        noise: Mapping[str, float] | None = None,
+        walk: Mapping[str, float] | None = None,
+        changes: Literal["ignore", "find", "follow"] | str = "ignore",
+        row_iterations: int = 20,
+        tolerance: float = 1e-8,
+    ) -> Track:
+        """Parameters against time, as a filter in flight estimates them.
+
+        Args:
+            flight: By default the fitted one, which needs start_rows.
+            start_rows: Fits so many first rows and goes on after them; 0: from this calibration,
+                which must be of another flight.
+            own: With start_rows, parameters of the flight alone, as its wind; all others begin as
+                this calibration has them, of another flight. None: the rows alone tell.
+            method: As of sepcal.track().
+            noise: Standard deviation of every output, in the first rows too [the start's].
+            walk: Random walks of parameters, as of sepcal.track().
+            changes: "find" or "follow" parameters that jump, as of sepcal.track().
+            row_iterations: Of iekf, at most so many a row.
+            tolerance: Of iekf.
+
+        Raises:
+            Error: The calibration's own flight without start_rows, whose rows must not count twice;
+                rows that are too few; names that the model doesn't have; a model with a state,
+                which sepcal.track() follows.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> track = base.track(start_rows=300)
+            >>> off = track["c_va"][-1] - base["c_va"].value
+            >>> bool(abs(off) < 3 * track.standard_deviation("c_va")[-1])
+            True
+        """
+        core, chosen = self._on(flight, "track(", known=False)
+        if chosen is self.flight and (own or not start_rows):
+            raise _core.Error(
+                "the calibration is of this flight, whose rows must not count twice; start from "
+                "its first ones alone, by start_rows"
+            )
+        options = track_options(
+            method=method,
+            noise=noise,
+            walk=walk,
+            changes=changes,
+            row_iterations=row_iterations,
+            tolerance=tolerance,
+            start_rows=start_rows,
+            own=own,
+        )
+        tracked, notes = core.track(chosen._core, options)
+        units = {name: parameter.unit for name, parameter in self.parameters.items()}
+        return Track(tracked, units, notes)
 
     @overload
     def diagnose(

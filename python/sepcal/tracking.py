@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Literal, Unpack
 
@@ -31,6 +31,7 @@ class Track(_core.Track):
     Attributes:
         units: Of states, parameters and outputs by name, as far as they are known; pickled they are
             lost.
+        notes: Of a flight: what was dropped or assumed, one line each, for people.
 
     Example:
         >>> flight = sepcal.datasets.load("aircraft")
@@ -40,10 +41,17 @@ class Track(_core.Track):
     """
 
     units: Mapping[str, str] = MappingProxyType({})
+    notes: Sequence[str] = ()
 
-    def __init__(self, core: _core.Track, units: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        core: _core.Track,
+        units: Mapping[str, str] | None = None,
+        notes: Sequence[str] = (),
+    ) -> None:
         super().__init__(core)
         self.units = units_of_states(units or {})
+        self.notes = list(notes)
 
     def __getitem__(self, name: str) -> Array:
         """One estimate against time, (M,)."""
@@ -124,6 +132,37 @@ def units_of_states(units: Mapping[str, str]) -> dict[str, str]:
         if is_initial:
             named.setdefault(state, unit)
     return named
+
+
+def track_options(
+    *,
+    method: str,
+    noise: Mapping[str, float] | None,
+    walk: Mapping[str, float] | None,
+    changes: str,
+    row_iterations: int,
+    tolerance: float,
+    start_rows: int,
+    process_noise: Mapping[str, float] | None = None,
+    initial_states: Mapping[str, float] | None = None,
+    forgetting: float = 1.0,
+    every: int = 10,
+    own: Sequence[str] = (),
+) -> _core.FlightTrackOptions:
+    """How a flight is followed, as the core has it."""
+    return _core.FlightTrackOptions(
+        method=method,
+        noise=dict(noise or {}),
+        process_noise=dict(process_noise or {}),
+        walk=dict(walk or {}),
+        changes=changes,
+        initial_states=dict(initial_states or {}),
+        iterations=_core.IterationOptions(row_iterations, tolerance),
+        forgetting=forgetting,
+        every=every,
+        start_rows=start_rows,
+        own=list(own),
+    )
 
 
 @spelled_out(without=(*REFUSED, "process_noise", "method"))

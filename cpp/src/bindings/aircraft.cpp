@@ -102,36 +102,10 @@ AppliedColumns apply_to(const AircraftFit& fitted, const Flight& flight,
   return {columns, notes};
 }
 
-/// The track, its rows those of the flight.
-std::pair<Tracked, std::vector<std::string>> track_on(
-    const AircraftFit& fitted, const Flight& flight, const std::string& method,
-    std::size_t start_rows, const Values& noise, const Values& process_noise, const Values& walk,
-    const std::string& changes, const Values& initial_states, const IterationOptions& iterations,
-    double forgetting, int every) {
-  TrackedAircraft tracked =
-      track_aircraft(fitted, flight,
-                     {.how = TrackOptions{.method = choice_of<TrackMethod>("method", method),
-                                          .noise = noise,
-                                          .process_noise = process_noise,
-                                          .walk = walk,
-                                          .changes = choice_of<TrackChanges>("changes", changes),
-                                          .initial_states = initial_states,
-                                          .iterations = iterations,
-                                          .forgetting = forgetting,
-                                          .every = every},
-                      .start_rows = start_rows});
-  Tracked result{tracked.track, {}};
-  const auto flight_row = [&tracked](std::size_t row) {
-    const auto at = std::ranges::find(tracked.track.rows, row) - tracked.track.rows.begin();
-    return tracked.flight_rows[static_cast<std::size_t>(at)];
-  };
-  for (Change& change : result.track.changes) {
-    change.onset = flight_row(change.onset);
-    change.found = flight_row(change.found);
-  }
-  result.track.rows = tracked.flight_rows;
-  for (const Variable& output : tracked.outputs) result.outputs.push_back(output.name);
-  return {std::move(result), std::move(tracked.notes)};
+Tracking track_on(const AircraftFit& fitted, const Flight& flight,
+                  const FlightTrackOptions& options) {
+  const Released released;
+  return tracking(track_aircraft(fitted, flight, options));
 }
 
 DiagnosisOptions with_threads_of(const AircraftFit& fitted, const DiagnosisOptions& asked) {
@@ -273,7 +247,7 @@ void define_fits(py::module_& module) {
              return apply_aircraft_to_file(self, file, output, process_noise);
            })
       .def("smooth", &smooth_aircraft, WithoutGil())
-      .def("track", &track_on, WithoutGil())
+      .def("track", &track_on)
       .def("to_json", [](const AircraftFit& self) { return to_json(self); })
       .def("save", &save, WithoutGil());
   py::class_<FittedSteps>(module, "Steps")

@@ -288,6 +288,13 @@ FlightPrediction predict_flight(const Calibration& calibration, const Flight& fl
   return predict(calibration, flight, level);
 }
 
+Tracking track_on(const Calibration& calibration, const Flight& flight,
+                  const FlightTrackOptions& options) {
+  const Released released;
+  need_own_effects(calibration);
+  return tracking(track(calibration, flight, options));
+}
+
 Calibration add_to(const Calibration& base, const Flight& flight, const std::string& effect,
                    const std::vector<PythonEffect>& own) {
   const OwnEffects makers = own_effects(own, effect_kit(*base.probe));
@@ -402,6 +409,7 @@ void define_calibration(py::module_& module) {
       .def("intervals", &intervals_on)
       .def("certify", &certify_on)
       .def("predict", &predict_flight)
+      .def("track", &track_on)
       .def("add", &add_to)
       .def("apply", &apply_to)
       .def("apply_to_file", &apply_file)

@@ -73,6 +73,7 @@ PYBIND11_MODULE(_core, module) {
   define_rivals(module);
   define_comparison(module);
   define_diagnosis(module);
+  define_state_results(module);
   define_flight(module);
   define_foreign_files(module);
   define_check(module);
@@ -81,6 +82,5 @@ PYBIND11_MODULE(_core, module) {
   define_many(module);
   define_trials(module);
   define_simulation(module);
-  define_state_results(module);
   define_programs(module);
 }

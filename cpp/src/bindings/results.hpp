@@ -16,7 +16,7 @@
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/stepwise.hpp"
-#include "sepcal/states/track.hpp"
+#include "sepcal/flight/track.hpp"
 
 namespace sepcal::bindings {
 
@@ -165,6 +165,16 @@ struct Tracked {
   Track track;
   std::vector<std::string> outputs;
 };
+
+/// sepcal.Track of a flight, its rows those of the flight, and notes.
+using Tracking = std::pair<Tracked, std::vector<std::string>>;
+
+inline Tracking tracking(TrackedFlight tracked) {
+  Tracked result{std::move(tracked.track), {}};
+  result.track.rows = std::move(tracked.flight_rows);
+  for (const Variable& output : tracked.outputs) result.outputs.push_back(output.name);
+  return {std::move(result), std::move(tracked.notes)};
+}
 
 /// sepcal.Intervals
 struct FoundIntervals {

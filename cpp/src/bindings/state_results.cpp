@@ -4,6 +4,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,7 +14,6 @@
 #include "sepcal/error.hpp"
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/smooth_record.hpp"
-#include "sepcal/states/track.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
@@ -21,6 +21,7 @@ namespace {
 
 using namespace py::literals;
 
+using Deviations = std::map<std::string, double>;
 using Changes = py::typing::Tuple<Change, py::ellipsis>;
 using Rows = Eigen::Vector<std::size_t, Eigen::Dynamic>;
 
@@ -30,6 +31,8 @@ void define_changes(py::module_& module) {
       .field("before", &ParameterChange::before, "Its estimate before the jump.")
       .field("after", &ParameterChange::after, "Behind it, as estimated when it was found.")
       .field("standard_deviation", &ParameterChange::standard_deviation, "Of after - before.")
+      .tuple("rivals", &ParameterChange::rivals,
+             "Parameters whose jump in its place would explain the innovations nearly as well.")
       .finish();
   BoundStruct<Change>(module, "Change", "Parameters that jumped at one time.")
       .field("onset", &Change::onset, "The row after which they jumped, to half a second or so.")
@@ -87,6 +90,27 @@ void define_track(py::module_& module) {
              return IterationOptions{iterations, tolerance};
            }),
            "iterations"_a, "tolerance"_a);
+  py::class_<FlightTrackOptions>(module, "FlightTrackOptions")
+      .def(py::init([](const std::string& method, const Deviations& noise,
+                       const Deviations& process_noise, const Deviations& walk,
+                       const std::string& changes, const Deviations& initial_states,
+                       const IterationOptions& iterations, double forgetting, int every,
+                       std::size_t start_rows, const std::vector<std::string>& own) {
+             return FlightTrackOptions{
+                 .how = {.method = choice_of<TrackMethod>("method", method),
+                         .noise = noise,
+                         .process_noise = process_noise,
+                         .walk = walk,
+                         .changes = choice_of<TrackChanges>("changes", changes),
+                         .initial_states = initial_states,
+                         .iterations = iterations,
+                         .forgetting = forgetting,
+                         .every = every},
+                 .start_rows = start_rows,
+                 .own = own};
+           }),
+           py::kw_only(), "method"_a, "noise"_a, "process_noise"_a, "walk"_a, "changes"_a,
+           "initial_states"_a, "iterations"_a, "forgetting"_a, "every"_a, "start_rows"_a, "own"_a);
 }
 
 /// Matrices one after another, (N, n, n).

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double between_onsets = 0.5;  // s
 constexpr double to_confirm = 2.0;      // s
+constexpr double patience = 4.5;        // s
 
 /// The mean time from a row to the next [s]; 0 where there are none, or no time.
 double mean_step(const Record& record) {
@@ -34,6 +35,7 @@ ChangeTestOptions options_for(const Record& record) {
   if (!(step > 0.0)) return options;
   options.rows_between = std::max(1, static_cast<int>(std::lround(between_onsets / step)));
   options.confirm = std::max(1, static_cast<int>(std::lround(to_confirm / step)));
+  options.patience = std::max(1, static_cast<int>(std::lround(patience / step)));
   return options;
 }
 
@@ -57,7 +59,7 @@ void ChangeWatch::restart() {
 Change ChangeWatch::change_of(const Jump<Eigen::Dynamic, Eigen::Dynamic>& jump,
                               const VectorXd& s) const {
   const auto k = static_cast<Index>(names_.size());
-  const VectorXd after = (s + jump.shift).tail(k);
+  const VectorXd after = (s + jump.moved).tail(k);
   const std::size_t last = rows_.size() - 1;
   const std::size_t back = std::min(last, static_cast<std::size_t>(jump.rows));
   Change change{.onset = rows_[last - back], .found = rows_[last], .statistic = jump.statistic};
@@ -67,10 +69,14 @@ Change ChangeWatch::change_of(const Jump<Eigen::Dynamic, Eigen::Dynamic>& jump,
   }
   for (Index j = 0; j < k; ++j) {
     if (jump.size[j] == 0.0) continue;
-    change.parameters.push_back({.name = names_[static_cast<std::size_t>(j)],
-                                 .before = after[j] - jump.size[j],
-                                 .after = after[j],
-                                 .standard_deviation = jump.deviation[j]});
+    ParameterChange moved{.name = names_[static_cast<std::size_t>(j)],
+                          .before = after[j] - jump.size[j],
+                          .after = after[j],
+                          .standard_deviation = jump.deviation[j]};
+    for (Index i = 0; i < k; ++i) {
+      if (jump.rivals(j, i) != 0.0) moved.rivals.push_back(names_[static_cast<std::size_t>(i)]);
+    }
+    change.parameters.push_back(std::move(moved));
   }
   return change;
 }

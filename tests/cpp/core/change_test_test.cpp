@@ -151,7 +151,7 @@ TEST_CASE("squares of scores are chi squared where nothing jumps, and alarms as 
       alarms += changes.update<1>(P, one, z, innovation) == ChangeStatus::changed ? 1 : 0;
       learns.update<1>(P, one, z, twice);
     }
-    scatter += learns.inflation()[0] / 400.0;
+    scatter += learns.inflation() / 400.0;
   }
   CHECK(alarms == 0);
   // Squares of one window, 4 on the average, beside the four of size 1 that are taken as seen:

@@ -22,8 +22,8 @@
 #include "sepcal/flight/flight_diagnosis.hpp"
 #include "sepcal/flight/intervals.hpp"
 #include "sepcal/flight/stepwise.hpp"
+#include "sepcal/flight/track.hpp"
 #include "sepcal/states/smooth_record.hpp"
-#include "sepcal/states/track.hpp"
 
 namespace sepcal {
 
@@ -171,31 +171,10 @@ Applied apply_aircraft_to_file(const AircraftFit& fitted, const std::string& fil
 SmoothedRecord smooth_aircraft(const AircraftFit& fitted, const Flight& flight,
                                const ProcessNoise& process_noise);
 
-struct AircraftTrackOptions {
-  TrackOptions how = {};  // its noise is that of the first rows too
-  /// Stages one and two on so many first rows, and on after them; 0: from the calibration of
-  /// another flight.
-  std::size_t start_rows = 0;
-};
-
-/// Estimates against time along a flight.
-struct TrackedAircraft {
-  Track track;
-  std::vector<Variable> table;                // of track.names, with units
-  std::vector<Variable> outputs;              // n_z
-  std::vector<std::size_t> flight_rows = {};  // of track.rows
-  std::string file = {};                      // the flight's
-  std::vector<std::string> notes = {};
-};
-
 /// Throws Error as track() and fit_aircraft() do, and where the flight is the calibration's own,
 /// whose rows must not count twice.
-TrackedAircraft track_aircraft(const AircraftFit& fitted, const Flight& flight,
-                               const AircraftTrackOptions& options = {});
-
-/// Writes time_s, every estimate with its standard deviation (`b_ax_mps2`, `b_ax_sd_mps2`) and the
-/// innovations (`alpha_innovation_rad`); a row an estimate.
-void write_csv(const TrackedAircraft& tracked, OutputFile& target);
+TrackedFlight track_aircraft(const AircraftFit& fitted, const Flight& flight,
+                             const FlightTrackOptions& options = {});
 
 std::string to_text(const AircraftFit& fitted, Detail detail = Detail::brief);
 std::string to_json(const AircraftFit& fitted);
@@ -204,8 +183,6 @@ std::string to_json(const StepwiseAircraft& result);
 std::string to_text(const TwoStepFit& fitted, Detail detail = Detail::brief);
 std::string to_json(const TwoStepFit& fitted);
 std::string to_text(const Applied& applied, const AircraftFit& fitted);
-std::string to_text(const TrackedAircraft& tracked, Detail detail = Detail::brief);
-std::string to_json(const TrackedAircraft& tracked);
 std::string to_json(const Applied& applied, const AircraftFit& fitted);
 
 /// Reads what to_json() wrote; of two steps the path or the aerodynamics, where `part` names it.

@@ -19,6 +19,7 @@ namespace sepcal {
 struct ChangeTestOptions {
   int rows_between = 25;  // from an onset that is tried to the next
   int confirm = 100;    // from an alarm to its verdict: an outlier's evidence fades, a jump's grows
+  int patience = 225;   // the same where another parameter explains it as well
   double alarm = 30.0;  // (score / its deviation)^2 of one parameter at one onset
   double join = 12.0;   // what a further parameter has to explain of the same
   double nonlinear = 0.1;  // of a jump's size: what its linearisation may be off
@@ -33,14 +34,22 @@ enum class ChangeStatus {
 /// A jump of some of s's last K entries.
 template <int N, int K, class Scalar = double>
 struct Jump {
+  using Parameters = Eigen::Vector<Scalar, K>;
+
   int rows = 0;          // since the onset that explains most
   Scalar statistic = 0;  // what the jump explains: chi squared of `count` degrees without one
   int count = 0;         // parameters that jumped
-  Eigen::Vector<Scalar, K> size = states::zeros<Eigen::Vector<Scalar, K>>();  // 0: did not
-  Eigen::Vector<Scalar, K> deviation = states::zeros<Eigen::Vector<Scalar, K>>();
-  Eigen::Vector<Scalar, N> shift = states::zeros<Eigen::Vector<Scalar, N>>();  // of s by now
-  /// What the shift adds to the covariance of s: spread'spread.
+  Parameters size = states::zeros<Parameters>();       // 0: did not
+  Parameters deviation = states::zeros<Parameters>();  // of size
+  /// 1 in row j, column k where a jump of k in place of j explains the innovations nearly as well.
+  Eigen::Matrix<Scalar, K, K> rivals = states::zeros<Eigen::Matrix<Scalar, K, K>>();
+  Eigen::Vector<Scalar, N> moved = states::zeros<Eigen::Vector<Scalar, N>>();  // s, by `size`
+  /// What a filter that follows takes, with the rivals open too: s moves by shift, and its
+  /// covariance grows by spread'spread.
+  Eigen::Vector<Scalar, N> shift = states::zeros<Eigen::Vector<Scalar, N>>();
   Eigen::Matrix<Scalar, K, N> spread = states::zeros<Eigen::Matrix<Scalar, K, N>>();
+
+  bool is_ambiguous() const { return !rivals.isZero(0); }
 };
 
 /// N: entries of s, of which the last K are the parameters that may jump. A filter's predictions
@@ -50,8 +59,8 @@ struct Jump {
 /// prediction, (I - K H) E in an update, and the mean of the whitened innovation by G d,
 /// G = S^-T H E. Score G'w and information G'G gather; the square of a parameter's score by its
 /// information is chi squared of one degree where nothing changed and the noise is the model's.
-/// Where it isn't, as in gusts, every such square is divided by what it has been in windows of the
-/// flight before.
+/// Where it isn't, as in gusts, every such square is divided by what they have been in windows of
+/// the flight before, of the parameter where they were largest.
 template <int N, int K, class Scalar = double, int Onsets = 20>
 class ChangeTest {
  public:
@@ -86,8 +95,11 @@ class ChangeTest {
       if (rows_ >= quiet_until_ && strongest(rows_) > static_cast<Scalar>(options_.alarm))
         alarm_ = rows_;
     } else if (rows_ - alarm_ >= options_.confirm) {
-      if (strongest(alarm_) > static_cast<Scalar>(options_.alarm)) return ChangeStatus::changed;
-      alarm_ = -1;
+      if (strongest(alarm_) <= static_cast<Scalar>(options_.alarm)) {
+        alarm_ = -1;
+      } else if (is_told()) {
+        return ChangeStatus::changed;
+      }
     }
     return alarm_ < 0 ? ChangeStatus::holds : ChangeStatus::suspected;
   }
@@ -96,18 +108,19 @@ class ChangeTest {
   /// the innovations: those that add `join` each, the best first, and without those that the later
   /// ones make idle.
   Jump<N, K, Scalar> jump() const {
-    Jump<N, K, Scalar> best;
+    const Onset* best = nullptr;
+    Parameters jumped = Parameters::Zero(k_);
     Scalar most = 0;
     for (int i = 0; i < count_ && at(i).row <= alarm_; ++i) {
       const Parameters chosen = choose(at(i));
-      const Scalar statistic = explained(at(i), chosen);
-      const Scalar worth = statistic - static_cast<Scalar>(options_.join) * chosen.sum();
-      if (worth <= most) continue;
+      const Scalar worth =
+          explained(at(i), chosen) - static_cast<Scalar>(options_.join) * chosen.sum();
+      if (best != nullptr && worth <= most) continue;
       most = worth;
-      best = jump_of(at(i), chosen);
-      best.statistic = statistic;
+      best = &at(i);
+      jumped = chosen;
     }
-    return best;
+    return best == nullptr ? Jump<N, K, Scalar>{} : jump_of(*best, jumped);
   }
 
   /// Behind a jump that was followed: its evidence is used. Parameters seldom jump: after a second
@@ -120,9 +133,9 @@ class ChangeTest {
     alarm_ = -1;
   }
 
-  /// How much more than white noise of the assumed size the scores scatter, at least 1, K.
-  Parameters inflation() const {
-    return ((sum_.array() + beforehand) / (windows_ + beforehand)).max(Scalar(1)).matrix();
+  /// How much more than white noise of the assumed size the scores scatter, at least 1.
+  Scalar inflation() const {
+    return std::max(Scalar(1), (sum_.maxCoeff() + beforehand) / (windows_ + beforehand));
   }
 
  private:
@@ -182,23 +195,31 @@ class ChangeTest {
 
   /// Of onsets until this row.
   Scalar strongest(int until) const {
-    const Parameters by = inflation().cwiseInverse();
     Scalar most = 0;
     for (int i = 0; i < count_ && at(i).row <= until; ++i) {
-      for (Eigen::Index j = 0; j < k_; ++j) most = std::max(most, square(at(i), j) * by[j]);
+      for (Eigen::Index j = 0; j < k_; ++j) most = std::max(most, square(at(i), j));
     }
-    return most;
+    return most / inflation();
   }
 
-  /// Scores at the assumed scatter; of parameters that are not chosen the identity, which tells
-  /// nothing.
-  struct Chosen {
+  /// Whether no other parameter explains the change as well, or there is no more time to see;
+  /// looked at five times from an onset to the next.
+  bool is_told() const {
+    const int since = rows_ - alarm_;
+    if (since >= options_.patience) return true;
+    return since % std::max(1, options_.rows_between / 5) == 0 && !jump().is_ambiguous();
+  }
+
+  /// Score and information of those that are chosen; of the others the identity, which tells
+  /// nothing. `prior`: information that is there before.
+  struct Told {
     Parameters score;
     Information root;
 
-    Chosen(const Onset& onset, const Parameters& chosen, const Parameters& inflation)
-        : score(onset.score.cwiseQuotient(inflation.cwiseSqrt()).cwiseProduct(chosen)) {
+    Told(const Onset& onset, const Parameters& chosen, const Parameters& prior)
+        : score(onset.score.cwiseProduct(chosen)) {
       Information information = onset.information;
+      information.diagonal() += prior;
       for (Eigen::Index j = 0; j < chosen.size(); ++j) {
         if (chosen[j] != Scalar(0)) continue;
         information.row(j).setZero();
@@ -207,12 +228,28 @@ class ChangeTest {
       }
       root = states::upper_root(information);
     }
+
+    Parameters size() const {
+      return states::solve_upper(root, states::solve_transposed(root, score));
+    }
+
+    /// U'U the covariance of those chosen, `by` times, and what their linearisation may be off.
+    Information covariance_root(const Parameters& chosen, Scalar by, const Parameters& off) const {
+      const Eigen::Index k = chosen.size();
+      Information rows = states::solve_transposed(root, Information(Information::Identity(k, k))) *
+                         (std::sqrt(by) * chosen).asDiagonal();
+      Information U = off.asDiagonal();
+      states::absorb_rows(U, rows);
+      return U;
+    }
   };
 
+  Parameters none() const { return Parameters::Zero(k_); }
+
   Scalar explained(const Onset& onset, const Parameters& chosen) const {
-    const Chosen of(onset, chosen, inflation());
-    if (!states::is_regular(of.root)) return 0;
-    return states::solve_transposed(of.root, of.score).squaredNorm();
+    const Told told(onset, chosen, none());
+    if (!states::is_regular(told.root)) return 0;
+    return states::solve_transposed(told.root, told.score).squaredNorm() / inflation();
   }
 
   /// 1 of those that jumped, 0 of the others.
@@ -249,21 +286,43 @@ class ChangeTest {
   }
 
   Jump<N, K, Scalar> jump_of(const Onset& onset, const Parameters& chosen) const {
-    const Parameters scatter = inflation().cwiseSqrt();
-    const Chosen plain(onset, chosen, Parameters::Ones(k_));
+    const Scalar by = inflation();
+    const auto nonlinear = static_cast<Scalar>(options_.nonlinear);
+    const Told told(onset, chosen, none());
     Jump<N, K, Scalar> jump;
     jump.rows = rows_ - onset.row;
+    jump.statistic = explained(onset, chosen);
     jump.count = static_cast<int>(chosen.sum());
-    jump.size = states::solve_upper(plain.root, states::solve_transposed(plain.root, plain.score));
-    // Rows whose products are the sizes' covariance, and what the linearisation may be off.
-    Information rows =
-        states::solve_transposed(plain.root, Information(Information::Identity(k_, k_))) *
-        chosen.cwiseProduct(scatter).asDiagonal();
-    Information U = Information::Zero(k_, k_);
-    U.diagonal() = static_cast<Scalar>(options_.nonlinear) * jump.size;
-    states::absorb_rows(U, rows);
+    jump.size = told.size();
+    jump.moved = states::product(onset.E, jump.size);
+    Information U = told.covariance_root(chosen, by, nonlinear * jump.size);
     jump.deviation = U.colwise().norm();
-    jump.shift = states::product(onset.E, jump.size);
+    jump.shift = jump.moved;
+    Parameters reach = jump.size.cwiseAbs();  // of what may have jumped in place of another
+    jump.rivals.setZero(k_, k_);
+    for (Eigen::Index j = 0; j < k_; ++j) {
+      for (Eigen::Index k = 0; k < k_; ++k) {
+        if (chosen[j] == Scalar(0) || chosen[k] != Scalar(0)) continue;
+        Parameters other = chosen;
+        other[j] = 0;
+        other[k] = 1;
+        if (jump.statistic - explained(onset, other) >= static_cast<Scalar>(options_.join))
+          continue;
+        jump.rivals(j, k) = 1;
+        reach[k] = std::max(reach[k], std::abs(Told(onset, other, none()).size()[k]));
+      }
+    }
+    if (jump.is_ambiguous()) {  // all that may have jumped, each by no more than would do alone
+      const Parameters open = (reach.array() > Scalar(0)).template cast<Scalar>();
+      Parameters prior = none();
+      for (Eigen::Index k = 0; k < k_; ++k) {
+        if (reach[k] > Scalar(0)) prior[k] = by / (reach[k] * reach[k]);
+      }
+      const Told together(onset, open, prior);
+      const Parameters size = together.size();
+      jump.shift = states::product(onset.E, size);
+      U = together.covariance_root(open, by, nonlinear * size);
+    }
     jump.spread = states::product(U, onset.E.transpose());
     return jump;
   }

@@ -73,6 +73,8 @@ struct ParameterChange {
   double before = 0.0;
   double after = 0.0;
   double standard_deviation = 0.0;  // of after - before
+  /// Parameters whose jump in its place would explain the innovations nearly as well.
+  std::vector<std::string> rivals = {};
 };
 
 /// Parameters that jumped at one time.

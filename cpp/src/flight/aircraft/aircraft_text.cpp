@@ -105,47 +105,6 @@ std::string to_text(const Applied& applied, const AircraftFit& fitted) {
   return text.text();
 }
 
-namespace {
-
-/// What jumped, when, from what to what.
-Page changes_text(const TrackedAircraft& tracked) {
-  Page text;
-  for (const Change& change : tracked.track.changes) {
-    text += page("\nfrom {:.6g} s on the parameters are others (said at {:.6g} s):\n",
-                 change.onset_time, change.found_time);
-    for (const ParameterChange& moved : change.parameters) {
-      const auto variable = std::ranges::find(tracked.table, moved.name, &Variable::name);
-      text += page("  {:<14} {:>12.5g} -> {:>12.5g}  sd {:.3g}  {}\n", moved.name, moved.before,
-                   moved.after, moved.standard_deviation, variable->unit);
-    }
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string to_text(const TrackedAircraft& tracked, Detail /*detail*/) {
-  const Track& track = tracked.track;
-  const Eigen::Index last = track.estimates.rows() - 1;
-  Page text = page("{} rows of {} tracked, to {:.6g} s\n", track.rows.size(), tracked.file,
-                   track.time.back());
-  text += page("{:<14} {:>12} {:>12} {:>12} {:>12}  unit\n", "", "first", "sd", "last", "sd");
-  for (Eigen::Index k = 0; k < track.estimates.cols(); ++k) {
-    const Variable& estimate = tracked.table[static_cast<std::size_t>(k)];
-    text += page("{:<14} {:>12.5g} {:>12.3g} {:>12.5g} {:>12.3g}  {}\n", estimate.name,
-                 track.estimates(0, k), track.standard_deviations(0, k), track.estimates(last, k),
-                 track.standard_deviations(last, k), estimate.unit);
-  }
-  text += changes_text(tracked);
-  if (track.refused > 0) {
-    text += page("{} rows were refused: something there is no finite number\n", track.refused);
-  }
-  if (track.not_converged > 0) {
-    text += page("{} rows ended by the cap of the iterations\n", track.not_converged);
-  }
-  return text.text();
-}
-
 std::string aircraft_effects_text() {
   Page text = text::catalogue_page("path") + text::catalogue_page("aircraft") +
               "what each coefficient is a sum of\n";

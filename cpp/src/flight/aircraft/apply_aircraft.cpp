@@ -5,6 +5,7 @@
 
 #include "base/thread_pool.hpp"
 #include "flight/aircraft/laid_aircraft.hpp"
+#include "flight/files/headers.hpp"
 #include "flight/verbs/added_columns.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/detail/aircraft/coefficients.hpp"
@@ -42,7 +43,7 @@ void add_modelled(const Fit& fit, const LaidAircraft& laid, const Flight& flight
             laid.record.column(outputs[j].name)[row] - residuals(k, static_cast<Eigen::Index>(j));
       }
     }
-    columns.push_back({header_of(outputs[j].name + "_model", outputs[j].unit),
+    columns.push_back({files::header_of(outputs[j].name + "_model", outputs[j].unit),
                        spread(modelled, laid, flight.rows())});
   }
 }
@@ -56,7 +57,7 @@ void add_path(const AircraftFit& fitted, const Fit& fit, const LaidAircraft& lai
   const auto add_table = [&](const auto& table, std::size_t count, const std::string& middle) {
     for (std::size_t i = 0; i < count; ++i) {
       const std::string name(table[i].name);
-      add(flown, name, header_of(name + middle, std::string(table[i].unit)));
+      add(flown, name, files::header_of(name + middle, std::string(table[i].unit)));
     }
   };
   add_table(FlightPath::inputs, FlightPath::readings, "_cal");
@@ -86,7 +87,7 @@ void add_smoothed(const SmoothedRecord& smoothed, const ProcessNoise& given,
                   Columns& columns) {
   const auto add = [&](const std::string& name, const std::string& unit,
                        const std::vector<double>& values) {
-    columns.push_back({header_of(name, unit), spread(values, laid, flight.rows())});
+    columns.push_back({files::header_of(name, unit), spread(values, laid, flight.rows())});
   };
   const auto unit_of = [](const std::vector<Variable>& table, const std::string& name) {
     return std::ranges::find(table, name, &Variable::name)->unit;
@@ -131,16 +132,6 @@ ParameterErrors errors_without_starts(const AircraftFit& fitted) {
 }
 
 }  // namespace
-
-std::string aircraft_log::header_of(const std::string& name, const std::string& unit) {
-  if (unit.starts_with('1')) return name;
-  std::string spelled = unit;
-  for (std::size_t at = spelled.find('/'); at != std::string::npos; at = spelled.find('/')) {
-    spelled.replace(at, 1, "p");
-  }
-  std::erase(spelled, '^');
-  return name + "_" + spelled;
-}
 
 SmoothedRecord aircraft_log::smooth_laid(const AircraftFit& fitted, const Fit& fit,
                                          const LaidAircraft& laid,

@@ -68,10 +68,6 @@ Record seen_by_model(const LaidAircraft& laid, const Fit& fit);
 /// noise would be seen to follow. `residuals` (rows of the segments x n_z): of the readings.
 Record channels_beside(const LaidAircraft& laid, const Eigen::MatrixXd& residuals);
 
-/// The name of a column with the unit as headers have it: "ax_cal_mps2"; of a number without a
-/// dimension and of a coefficient by radians, Cm_alpha, the name alone.
-std::string header_of(const std::string& name, const std::string& unit);
-
 bool is_same_flight(const AircraftFit& fitted, const Flight& flight);
 
 /// The geometry, which every model but path needs. Throws Error where there is none.

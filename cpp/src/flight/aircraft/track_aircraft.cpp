@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "flight/aircraft/laid_aircraft.hpp"
-#include "flight/files/csv_cells.hpp"
-#include "flight/json/output_values.hpp"
+#include "flight/tracks/flight_rows.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft.hpp"
 
@@ -17,7 +16,7 @@ using namespace aircraft_log;  // this room's own
 namespace {
 
 StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const LaidAircraft& laid,
-                     const AircraftTrackOptions& how) {
+                     const FlightTrackOptions& how) {
   const std::size_t rows = how.start_rows;
   if (rows == 0) {
     if (is_same_flight(fitted, flight)) {
@@ -67,8 +66,8 @@ std::vector<Variable> table_of(const Track& track, const BlockModel& model) {
 
 }  // namespace
 
-TrackedAircraft track_aircraft(const AircraftFit& fitted, const Flight& flight,
-                               const AircraftTrackOptions& options) {
+TrackedFlight track_aircraft(const AircraftFit& fitted, const Flight& flight,
+                             const FlightTrackOptions& options) {
   need_rows_in_time(fitted, "has no states or biases that a filter could begin with");
   AircraftOptions followed = options_on(fitted, flight);
   followed.trajectory.outputs = fitted.options.trajectory.outputs;  // what is logged is tracked
@@ -80,86 +79,15 @@ TrackedAircraft track_aircraft(const AircraftFit& fitted, const Flight& flight,
           laid.along.front().name));
     }
     const StreamStart start = start_of(fitted, flight, laid, options);
-    TrackedAircraft tracked{.track = track(*laid.model, laid.record, start, options.how),
-                            .table = {},
-                            .outputs = laid.model->tables().outputs,
-                            .file = flight.name(),
-                            .notes = laid.notes};
+    TrackedFlight tracked{.track = track(*laid.model, laid.record, start, options.how),
+                          .table = {},
+                          .outputs = laid.model->tables().outputs,
+                          .file = flight.name(),
+                          .notes = laid.notes};
     tracked.table = table_of(tracked.track, *laid.model);
-    for (const std::size_t row : tracked.track.rows) {
-      tracked.flight_rows.push_back(laid.flight_rows[row]);
-    }
+    tracks::set_flight_rows(tracked, laid.flight_rows);
     return tracked;
   });
-}
-
-void write_csv(const TrackedAircraft& tracked, OutputFile& target) {
-  const Track& track = tracked.track;
-  std::string line = "time_s";
-  for (const Variable& estimate : tracked.table) {
-    line += "," + header_of(estimate.name, estimate.unit) + "," +
-            header_of(estimate.name + "_sd", estimate.unit);
-  }
-  for (const Variable& output : tracked.outputs) {
-    line += "," + header_of(output.name + "_innovation", output.unit);
-  }
-  target.write(line + "\n");
-  for (Eigen::Index row = 0; row < track.estimates.rows(); ++row) {
-    line.clear();
-    files::append_number(line, track.time[static_cast<std::size_t>(row)]);
-    const auto add = [&line](double value) {
-      line += ',';
-      files::append_number(line, value);
-    };
-    for (Eigen::Index k = 0; k < track.estimates.cols(); ++k) {
-      add(track.estimates(row, k));
-      add(track.standard_deviations(row, k));
-    }
-    for (Eigen::Index j = 0; j < track.innovations.cols(); ++j) add(track.innovations(row, j));
-    target.write(line + "\n");
-  }
-}
-
-namespace {
-
-json::Json changes_of(const TrackedAircraft& tracked) {
-  json::Json changes = json::Json::array();
-  for (const Change& change : tracked.track.changes) {
-    json::Json parameters = json::Json::object();
-    for (const ParameterChange& moved : change.parameters) {
-      parameters[moved.name] = {{"before", json::number(moved.before)},
-                                {"after", json::number(moved.after)},
-                                {"standard_deviation", json::number(moved.standard_deviation)}};
-    }
-    changes.push_back({{"onset_s", json::number(change.onset_time)},
-                       {"found_s", json::number(change.found_time)},
-                       {"statistic", json::number(change.statistic)},
-                       {"parameters", parameters}});
-  }
-  return changes;
-}
-
-}  // namespace
-
-std::string to_json(const TrackedAircraft& tracked) {
-  using json::Json;
-  const Track& track = tracked.track;
-  const Eigen::Index last = track.estimates.rows() - 1;
-  Json estimates = Json::object();
-  for (Eigen::Index k = 0; k < track.estimates.cols(); ++k) {
-    const Variable& estimate = tracked.table[static_cast<std::size_t>(k)];
-    estimates[estimate.name] = {
-        {"value", json::number(track.estimates(last, k))},
-        {"standard_deviation", json::number(track.standard_deviations(last, k))},
-        {"unit", estimate.unit}};
-  }
-  return json::text_of({{"schema_version", schema_version},
-                        {"flight", tracked.file},
-                        {"rows", track.rows.size()},
-                        {"refused", track.refused},
-                        {"not_converged", track.not_converged},
-                        {"changes", changes_of(tracked)},
-                        {"last", estimates}});
 }
 
 }  // namespace sepcal

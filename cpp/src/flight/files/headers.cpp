@@ -235,4 +235,14 @@ Message describe_missing(std::string_view quantity, UnitKind kind,
   return around(std::move(text), ask_for_near_miss(quantity, kind, others), "");
 }
 
+std::string header_of(const std::string& name, const std::string& unit) {
+  if (unit.starts_with('1')) return name;
+  std::string spelled = unit;
+  for (std::size_t at = spelled.find('/'); at != std::string::npos; at = spelled.find('/')) {
+    spelled.replace(at, 1, "p");
+  }
+  std::erase(spelled, '^');
+  return name + "_" + spelled;
+}
+
 }  // namespace sepcal::files

@@ -30,6 +30,10 @@ const Unit* unit_in(std::string_view header, std::string_view quantity, UnitKind
 std::vector<std::string> accepted_headers(std::string_view quantity, UnitKind kind,
                                           const Unit* bare = nullptr);
 
+/// The name of a column with the unit as headers have it: "ax_cal_mps2"; of a number without a
+/// dimension and of a coefficient by radians, Cm_alpha, the name alone.
+std::string header_of(const std::string& name, const std::string& unit);
+
 /// A quantity as a flight has it.
 struct LoggedQuantity {
   const Flight::Column* column = nullptr;

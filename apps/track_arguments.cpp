@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "track_arguments.hpp"
+
+#include "option_values.hpp"
+
+namespace sepcal::app {
+
+void TrackArguments::add_to(CLI::App& verb) {
+  verb.add_option("--method", method_,
+                  "rls: recursive least squares linearised at the start; ekf, iekf: the extended "
+                  "and the iterated extended filter; srif: as square-root information; rml: "
+                  "recursive maximum likelihood, which estimates the noises' sizes too")
+      ->type_name("HOW")
+      ->capture_default_str();
+  verb.add_option("--changes", changes_,
+                  "of ekf, iekf, srif, parameters that jump on the way: ignore; find the first "
+                  "and say when and which; follow: open what moved and go on")
+      ->type_name("HOW")
+      ->capture_default_str();
+  verb.add_option("--forgetting", options_.how.forgetting,
+                  "of rml: what a sample counts for after the next")
+      ->type_name("MU")
+      ->capture_default_str();
+  add_whole_number(verb, "--every", options_.how.every,
+                   "of rml: samples from a step of the parameters to the next");
+  add_whole_number(verb, "--start-rows", options_.start_rows,
+                   "fits so many first rows, and goes on after them; 0: starts from the fit, of "
+                   "another flight");
+  add_deviations(verb, "--walk", walk_,
+                 "lets a parameter change on the way, a random walk of SD [unit/sqrt(s)]");
+}
+
+void TrackArguments::add_to_sensor(CLI::App& verb) {
+  add_to(verb);
+  add_deviations(verb, "--noise", noise_,
+                 "standard deviation of an output; else the start's; may be repeated");
+  verb.add_option(
+          "--own", own_,
+          "with --start-rows: parameters of this flight alone, as its wind; the others begin "
+          "as the calibration has them")
+      ->type_name("P,P");
+}
+
+FlightTrackOptions TrackArguments::resolve() const {
+  FlightTrackOptions options = options_;
+  options.how.method = choice_of<TrackMethod>("--method", method_);
+  options.how.changes = choice_of<TrackChanges>("--changes", changes_);
+  options.how.walk = parse_deviations("--walk", walk_);
+  options.how.noise = parse_deviations("--noise", noise_);
+  if (!own_.empty()) options.own = split(own_, ',');
+  return options;
+}
+
+}  // namespace sepcal::app
