@@ -285,7 +285,7 @@ class Recogniser {
     name_columns();
     find_suffixes();
     note_marks();
-    find_time(form_, rows_, shown_, asked_.mapped);
+    find_time(file_, form_, rows_, shown_, asked_.mapped);
     number_decimals();
     return std::move(form_);
   }
@@ -373,7 +373,8 @@ class Recogniser {
           column.may_group = column.may_group && parse_number_as(number, {',', "."}).has_value();
         }
         if (look.either) column.either = cell;
-        column.whole = column.whole || number.find_first_of(".,' eE") == std::string_view::npos;
+        column.whole = column.whole || (look.groups.empty() &&
+                                        number.find_first_of(".,eE") == std::string_view::npos);
         for (const char mark : look.groups) {
           if (column.groups.find(mark) == std::string::npos) column.groups += mark;
         }
@@ -548,6 +549,12 @@ class Recogniser {
         logged = fmt::format("column_{}", cell + 1);
         if (form_.header_line > 0) note(fmt::format("a column without a name is {}", logged));
       }
+      if (contradicts_unit(logged, units_[cell])) {
+        note(
+            fmt::format("the header {} and the line of units, {}, say different units: the header "
+                        "holds",
+                        logged, units_[cell]));
+      }
       form_.columns.push_back({.header = with_unit(logged, units_[cell]),
                                .logged = logged,
                                .cell = cell,
@@ -596,7 +603,7 @@ class Recogniser {
     std::vector<std::string> with;
     for (ColumnForm& column : form_.columns) {
       if (column.header == "maneuver") continue;  // labels
-      std::string suffix;
+      std::map<std::string, std::size_t> suffixes;
       std::size_t such = 0;
       std::size_t filled = 0;
       for (const auto& row : shown_) {
@@ -605,17 +612,36 @@ class Recogniser {
         ++filled;
         const std::size_t at = find_suffix(cell);
         if (at == std::string_view::npos) continue;
-        if (suffix.empty()) suffix = cell.substr(at);
-        such += cell.substr(at) == suffix ? 1U : 0U;
+        ++suffixes[std::string(cell.substr(at))];
+        ++such;
       }
       if (such == 0 || 10 * such < 9 * filled) continue;
-      column.suffix = suffix;
-      column.header = with_unit(column.header, to_utf8(suffix));
+      column.suffix = std::ranges::max_element(suffixes, {}, [](const auto& suffix) {
+                        return suffix.second;
+                      })->first;
+      column.header = with_unit(column.header, to_utf8(column.suffix));
       with.push_back(column.logged);
+      if (suffixes.size() > 1) note_other_suffixes(column, suffixes);
     }
     if (!with.empty()) {
       note(fmt::format("the cells of {} name their unit", fmt::join(with, ", ")));
     }
+  }
+
+  void note_other_suffixes(const ColumnForm& column,
+                           const std::map<std::string, std::size_t>& suffixes) {
+    constexpr std::size_t most = 3;
+    const auto unit_of = [](std::string_view suffix) {
+      return to_utf8(suffix.substr(suffix.find_first_not_of(' ')));
+    };
+    std::vector<std::string> others;
+    for (const auto& [suffix, cells] : suffixes) {
+      if (suffix != column.suffix && others.size() < most) others.push_back(unit_of(suffix));
+    }
+    note(
+        fmt::format("cells of {0} are in {1} and others in {2}: those in {1} alone are read; "
+                    "convert the rest",
+                    column.logged, unit_of(column.suffix), fmt::join(others, ", ")));
   }
 
   void number_decimals() {

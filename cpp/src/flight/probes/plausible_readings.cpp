@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <span>
 
 #include "base/escaping.hpp"
@@ -71,6 +73,54 @@ std::string suggest_units(std::span<const Reading> readings, const Range& range,
                      units.size() > 1 ? fmt::format(" for {}", units.front()) : "");
 }
 
+/// How nearly a yaw [rad] follows the course of the velocity, from 0 to 1; NaN where none is in use
+/// or hardly anything moved.
+double follow_course(std::span<const double> yaw, double unit, const FindReading& find) {
+  constexpr double slow = 3.0;  // m/s
+  constexpr std::size_t fewest = 20;
+  const auto north = find("vn");
+  const auto east = find("ve");
+  if (!north || !east) return std::nan("");
+  std::complex<double> sum = 0.0;
+  std::size_t rows = 0;
+  for (std::size_t row = 0; row < yaw.size(); ++row) {
+    const double vn = north->values[row];
+    const double ve = east->values[row];
+    if (!(std::hypot(vn, ve) > slow)) continue;
+    sum += std::polar(1.0, unit * yaw[row] - std::atan2(ve, vn));
+    ++rows;
+  }
+  return rows < fewest ? std::nan("") : std::abs(sum) / static_cast<double>(rows);
+}
+
+/// How fast a yaw turns, as a multiple of the rate r; NaN where that is not in use.
+double compare_with_rate(std::span<const double> yaw, const FindReading& find) {
+  const auto time = find("time");
+  const auto rate = find("r");
+  if (!time || !rate) return std::nan("");
+  double both = 0.0;
+  double rate_alone = 0.0;
+  for (std::size_t row = 1; row < yaw.size(); ++row) {
+    const double turned = rate->values[row] * (time->values[row] - time->values[row - 1]);
+    both += turned * (yaw[row] - yaw[row - 1]);
+    rate_alone += turned * turned;
+  }
+  return both / rate_alone;
+}
+
+/// Whether a yaw beyond a turn is in radians all the same, and counts the turns: as such it follows
+/// the course, or turns as fast as r says, and as degrees it doesn't.
+bool is_unwrapped(const Reading& yaw, const FindReading& find) {
+  constexpr double of_degree = std::numbers::pi / 180.0;
+  constexpr double closely = 0.7;
+  constexpr double nearly = 3.0;
+  const double in_radians = follow_course(yaw.values, 1.0, find);
+  const double in_degrees = follow_course(yaw.values, of_degree, find);
+  if (std::max(in_radians, in_degrees) > closely) return in_radians > in_degrees;
+  const double turns = compare_with_rate(yaw.values, find);
+  return turns > 1.0 / nearly && turns < nearly;
+}
+
 void check_range(const QuantityRange& entry, const FindReading& find,
                  std::vector<Implausible>& found) {
   const auto reading = find(entry.quantity);
@@ -79,7 +129,7 @@ void check_range(const QuantityRange& entry, const FindReading& find,
   if (counts_turns) return;
   const auto outside = std::ranges::count_if(
       reading->values, [&](double value) { return !entry.range.contains(value); });
-  if (outside == 0) return;
+  if (outside == 0 || (entry.quantity == "yaw" && is_unwrapped(*reading, find))) return;
   const auto [smallest, largest] = std::ranges::minmax(reading->values);
   found.push_back(
       {{reading->header},

@@ -205,6 +205,15 @@ TEST_CASE("other delimiters, and decimal commas") {
 TEST_CASE("thousands, and what may be either") {
   CHECK(numbers_of("a;b\n1.234,5;2\n") == Numbers{{1234.5, 2.0}});
   CHECK(numbers_of("a;b\n1'234.5;2\n") == Numbers{{1234.5, 2.0}});
+  CHECK(numbers_of("a;b\n1\xE2\x80\x99"
+                   "234.5;2\n") == Numbers{{1234.5, 2.0}});
+  CHECK(numbers_of("a;b\n-1\xE2\x80\x99"
+                   "234\xE2\x80\x99"
+                   "567.5;2\n12;3\n") == Numbers{{-1234567.5, 2.0}, {12.0, 3.0}});
+  CHECK(numbers_of("a;b\n1\x92"
+                   "234.5;2\n") == Numbers{{1234.5, 2.0}});  // in Windows-1252
+  CHECK(numbers_of("a;b\n1\xE2\x80\x99"
+                   "23;2\n") == Numbers{{{}, 2.0}});
   CHECK(numbers_of("a;b\n1 234,5;2\n") == Numbers{{1234.5, 2.0}});
   CHECK(numbers_of("a;b\n\"1,234.5\";2\n") == Numbers{{1234.5, 2.0}});
   CHECK(numbers_of("a;b\n1,234;0,5\n") == Numbers{{1.234, 0.5}});
@@ -283,6 +292,27 @@ TEST_CASE("exponents of Fortran") {
 TEST_CASE("a unit in each cell") {
   CHECK(read_rows("v,n\n14.2 m/s,1\n15 m/s,2\n").front() == Lines{"v (m/s)", "n"});
   CHECK(numbers_of("v,n\n14.2 m/s,1\n15 m/s,2\n") == Numbers{{14.2, 1.0}, {15.0, 2.0}});
+}
+
+TEST_CASE("units that differ from cell to cell") {
+  const std::string table = "a,ias\n1,12 kt\n2,10 m/s\n3,14 kt\n";
+  CHECK(read_rows(table)[0] == Lines{"a", "ias (kt)"});
+  CHECK(numbers_of(table) == Numbers{{1.0, 12.0}, {2.0, {}}, {3.0, 14.0}});
+  CHECK(notes_of(table) ==
+        Lines{"cells of ias are in kt and others in m/s: those in kt alone are read; convert the "
+              "rest",
+              "the cells of ias name their unit"});
+}
+
+TEST_CASE("a line of units that contradicts a header") {
+  const std::string table = "time_s,ias_kt,alt_ft\ns,m/s,feet\n0,12,3\n1,13,3\n2,12,3\n";
+  CHECK(read_rows(table)[0] == Lines{"time_s", "ias_kt", "alt_ft"});
+  CHECK(notes_of(table) ==
+        Lines{"line 2 gives units",
+              "the header ias_kt and the line of units, m/s, say different units: the header "
+              "holds"});
+  CHECK(notes_of("time_s,IAS [kt],p_radps,vn_mps\ns,kts,rad/s,m/s\n0,1,2,3\n1,2,3,4\n") ==
+        Lines{"line 2 gives units"});
 }
 
 TEST_CASE("lines that are no rows") {
@@ -378,6 +408,30 @@ TEST_CASE("time in text") {
   CHECK(read_rows("time,x\n10.50000,1\n10.50003,2\n").front() == Lines{"time", "x"});
   // Which count is not known: nothing is guessed.
   CHECK(read_rows("t,x\n0,1\n200,2\n400,3\n").front() == Lines{"t", "x"});
+}
+
+TEST_CASE("clocks of points, and packed ones that say so") {
+  const std::string points = "UTC,a\n10.14.30.0,1\n10.14.30.5,2\n10.15.01.25,3\n";
+  CHECK(numbers_of(points) == Numbers{{36870.0, 1.0}, {36870.5, 2.0}, {36901.25, 3.0}});
+  CHECK(notes_of(points) == Lines{"time is from 'UTC', a time of day, in seconds since midnight"});
+  const std::string dates = "day,a\n30.04.24,1\n30.04.24,2\n";
+  CHECK(read_rows(dates)[0] == Lines{"day", "a"});  // no clock
+  const std::string packed = "hhmmss,a\n101430.0,1\n101430.5,2\n";
+  CHECK(numbers_of(packed) == Numbers{{36870.0, 1.0}, {36870.5, 2.0}});
+  CHECK(notes_of(packed) ==
+        Lines{"time is from 'hhmmss', a time of day as HHMMSS, in seconds since midnight"});
+}
+
+TEST_CASE("counts since an epoch whose digits are lost") {
+  std::string rows;
+  for (int i = 0; i < 20; ++i) rows += "1.714781E+09," + std::to_string(i) + "\n";
+  const std::string said =
+      "' has lost the digits that tell its rows apart: row after row is '1.714781E+09'; have it "
+      "written with all digits, as 1714781000.25";
+  CHECK(refuse("Timestamp,a\n" + rows) == "flight.csv: 'Timestamp" + said);
+  CHECK(refuse("time_s,a\n" + rows) == "flight.csv: 'time_s" + said);
+  CHECK(read_rows("time_s,Timestamp\n0,1.714781E+09\n1,1.714781E+09\n").size() == 3);
+  CHECK(read_rows("a,b\n" + rows).size() == 21);
 }
 
 TEST_CASE("gzip and Zstandard") {
