@@ -79,6 +79,10 @@ def points(at: dict[str, float]) -> str:
     return f"10.{int(since // 60):02d}.{since % 60:04.1f}"
 
 
+def iso(at: dict[str, float]) -> str:
+    return f"2024-05-04T10:{int(at['time'] // 60):02d}:{at['time'] % 60:06.3f}Z"
+
+
 @pytest.mark.parametrize(
     ("headers", "clock", "told"),
     [
@@ -99,6 +103,39 @@ def test_clocks(
     fitted = fit(tmp_path)
     assert_true(fitted)
     assert told in fitted.err
+
+
+@pytest.mark.parametrize(
+    ("header", "clock", "above"),
+    [
+        ("Elapsed Time (min)", lambda at: f"{at['time'] / 60:.6f}", ""),
+        ("Uhrzeit", points, ""),
+        ("GPS Time", iso, ""),
+        ("Time", lambda at: f"{1000 * at['time']:.0f}", "ms,m/s,m/s,m/s,m/s\n"),
+    ],
+)
+def test_apply_keeps_the_name_of_time(
+    header: str, clock: Callable[[dict[str, float]], str], above: str, tmp_path: Path
+) -> None:
+    """And its cells, so that the corrected log is read as the log is."""
+    write(
+        tmp_path / "log.csv",
+        f"{header},vn_mps,ve_mps,vd_mps,airspeed_mps",
+        lambda at: f"{clock(at)},{velocity(at)},{at['read']:.4f}",
+        above,
+    )
+    fitted = run("sepcal-pitot", "fit", "log.csv", "-o", "base.json", folder=tmp_path)
+    assert fitted.code == 0, fitted.err
+    applied = run("sepcal-pitot", "apply", "log.csv", "base.json", "-o", "out.csv", folder=tmp_path)
+    assert applied.code == 0, applied.err
+    log = (tmp_path / "log.csv").read_text().splitlines()
+    out = (tmp_path / "out.csv").read_text().splitlines()
+    name = f"{header} (ms)" if above else header
+    assert out[0].split(",")[0] == name
+    first = 2 if above else 1
+    assert [row.split(",")[0] for row in out[1:]] == [row.split(",")[0] for row in log[first:]]
+    again = run("sepcal-pitot", "fit", "out.csv", "--json", folder=tmp_path)
+    assert_true(again)
 
 
 def test_a_packed_clock(tmp_path: Path) -> None:

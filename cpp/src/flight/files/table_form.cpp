@@ -555,8 +555,10 @@ class Recogniser {
                         "holds",
                         logged, units_[cell]));
       }
-      form_.columns.push_back({.header = with_unit(logged, units_[cell]),
+      const std::string header = with_unit(logged, units_[cell]);
+      form_.columns.push_back({.header = header,
                                .logged = logged,
+                               .written = header,
                                .cell = cell,
                                .marks = marks_[cell]});
     }
@@ -591,6 +593,7 @@ class Recogniser {
       do {
         column.header = fmt::format("{}.{}", header, ++given[header]);
       } while (count.contains(column.header));
+      column.written = column.header;
       if (given[header] == 1) {
         note(fmt::format("column '{}' is there {}: the first is {}", header,
                          count[header] == 2 ? "twice" : fmt::format("{} times", count[header]),
@@ -620,6 +623,7 @@ class Recogniser {
                         return suffix.second;
                       })->first;
       column.header = with_unit(column.header, to_utf8(column.suffix));
+      column.written = column.header;
       with.push_back(column.logged);
       if (suffixes.size() > 1) note_other_suffixes(column, suffixes);
     }

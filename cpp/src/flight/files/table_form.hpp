@@ -29,6 +29,7 @@ enum class CellKind {
 struct ColumnForm {
   std::string header;    // unique and not empty
   std::string logged;    // the header as the file has it
+  std::string written;   // where the table is written anew: that, with the unit of its own line
   std::size_t cell = 0;  // which of a row's
   NumberMarks marks = {};
   CellKind kind = CellKind::number;
