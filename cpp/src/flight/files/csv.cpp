@@ -181,7 +181,8 @@ std::string_view CsvReader::text() {
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const bool is_stamp = form_->columns[i].kind != files::CellKind::number;
     const auto value = is_stamp ? std::nullopt : number(i);
-    cells.push_back(value ? "" : files::to_utf8(cells_[i]));
+    const bool is_text = form_->columns[i].missing.empty();  // else a flag that stands for none
+    cells.push_back(value || !is_text ? "" : files::to_utf8(cells_[i]));
     if (value) files::append_number(cells.back(), *value);
   }
   plain_text_ = files::join_cells(cells);

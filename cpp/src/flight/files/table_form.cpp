@@ -11,6 +11,7 @@
 #include <map>
 #include <tuple>
 
+#include "flight/files/icartt.hpp"
 #include "flight/files/number_text.hpp"
 #include "flight/files/row_cells.hpp"
 #include "flight/files/table_head.hpp"
@@ -279,9 +280,14 @@ class Recogniser {
   }
 
   TableForm recognise() {
+    icartt_ = read_icartt(all_);
     choose_layout();
     find_numbers();
-    read_head();
+    if (icartt_) {
+      take_icartt_head();
+    } else {
+      read_head();
+    }
     name_columns();
     find_suffixes();
     note_marks();
@@ -292,23 +298,11 @@ class Recogniser {
 
  private:
   void choose_layout() {
-    std::string asked = asked_.delimiter;
-    if (!all_.empty() && asked.empty()) {
-      asked = find_sep(all_.front());
-      if (!asked.empty()) all_.front() = {};  // it is read
+    if (icartt_) {
+      lay_out_icartt();
+    } else {
+      find_layout();
     }
-    const Delimiter* const only = find_delimiter(asked);
-    for (std::size_t most = most_lines; layout_.cells == 0 && lines_.size() < all_.size();
-         most *= 10) {
-      lines_ = std::span(all_).first(std::min(most, all_.size()));
-      layout_ = {};
-      for (const Delimiter& by : delimiters) {
-        if (only != nullptr && only != &by) continue;
-        Layout tried = lay_out(lines_, by, texts_);
-        if (layout_.by == nullptr || tried.is_better_than(layout_)) layout_ = std::move(tried);
-      }
-    }
-    if (layout_.cells == 0) lay_out_text(only);
     form_.delimiter = layout_.by->mark;
     form_.first_row = layout_.first_row + 1;
     for (std::size_t i = layout_.first_row; i < lines_.size(); ++i) {
@@ -326,6 +320,49 @@ class Recogniser {
     if (form_.delimiter != ',' && layout_.cells > 1) {
       note(fmt::format("{} part the columns", layout_.by->name));
     }
+  }
+
+  void lay_out_icartt() {
+    lines_ = std::span(all_).first(std::min(icartt_->lines + most_lines, all_.size()));
+    layout_.by = &delimiters.front();
+    layout_.first_row = icartt_->lines;
+    layout_.cells = icartt_->columns.size();
+    layout_.lines.resize(icartt_->lines);
+    for (const std::string_view line : lines_.subspan(icartt_->lines)) {
+      layout_.lines.push_back(cut(line, layout_.by->mark, texts_));
+    }
+  }
+
+  void take_icartt_head() {
+    form_.header_line = icartt_->lines;
+    for (const IcarttColumn& column : icartt_->columns) {
+      names_.push_back(column.name);
+      units_.push_back(column.unit);
+    }
+    note(
+        fmt::format("ICARTT: the {} lines of the head give names and units, and which numbers are "
+                    "missing ones",
+                    icartt_->lines));
+  }
+
+  void find_layout() {
+    std::string asked = asked_.delimiter;
+    if (!all_.empty() && asked.empty()) {
+      asked = find_sep(all_.front());
+      if (!asked.empty()) all_.front() = {};  // it is read
+    }
+    const Delimiter* const only = find_delimiter(asked);
+    for (std::size_t most = most_lines; layout_.cells == 0 && lines_.size() < all_.size();
+         most *= 10) {
+      lines_ = std::span(all_).first(std::min(most, all_.size()));
+      layout_ = {};
+      for (const Delimiter& by : delimiters) {
+        if (only != nullptr && only != &by) continue;
+        Layout tried = lay_out(lines_, by, texts_);
+        if (layout_.by == nullptr || tried.is_better_than(layout_)) layout_ = std::move(tried);
+      }
+    }
+    if (layout_.cells == 0) lay_out_text(only);
   }
 
   /// A table without a row that has numbers: its first line names the columns.
@@ -561,6 +598,9 @@ class Recogniser {
                                .written = header,
                                .cell = cell,
                                .marks = marks_[cell]});
+      if (!icartt_) continue;
+      form_.columns.back().scale = icartt_->columns[cell].scale;
+      form_.columns.back().missing = icartt_->columns[cell].missing;
     }
     number_doubles();
   }
@@ -667,6 +707,7 @@ class Recogniser {
   std::vector<std::string_view> all_;
   std::span<const std::string_view> lines_;  // of all, those that are looked at closely
   std::deque<std::string> texts_;            // keeps what views point to
+  std::optional<IcarttHead> icartt_;         // where it is such a file
   Layout layout_;
   SampledRows rows_;                      // of these lines
   SampledRows shown_;                     // the same and some of later lines
@@ -696,7 +737,8 @@ bool is_whole(const TableForm& form, std::span<const std::string_view> cells) {
 bool TableForm::is_plain() const {
   if (delimiter != ',' || is_odd || columns.size() != cells) return false;
   return std::ranges::all_of(columns, [](const ColumnForm& column) {
-    return column.kind == CellKind::number && column.suffix.empty() && column.marks.is_plain();
+    return column.kind == CellKind::number && column.suffix.empty() && column.marks.is_plain() &&
+           column.missing.empty() && column.scale == 1.0;
   });
 }
 
@@ -741,7 +783,11 @@ std::optional<double> read_number(const ColumnForm& column,
     cell.remove_suffix(column.suffix.size());
     while (cell.ends_with(' ')) cell.remove_suffix(1);
   }
-  return parse_number_as(cell, column.marks);
+  const auto number = parse_number_as(cell, column.marks);
+  if (!number || std::ranges::find(column.missing, *number) != column.missing.end()) {
+    return std::nullopt;
+  }
+  return *number * column.scale;
 }
 
 }  // namespace sepcal::files

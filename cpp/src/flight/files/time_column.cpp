@@ -30,9 +30,10 @@ bool is_time_word(const std::string& word) {
   return std::ranges::find(words, word) != words.end();
 }
 
-/// Whose clock it is.
+/// Whose clock it is, or of what.
 bool is_owner_of_time(const std::string& word) {
-  constexpr std::array words{"gps", "sys", "system", "session", "log", "lcl", "local"};
+  constexpr std::array words{"gps", "sys",   "system", "session", "log",
+                             "lcl", "local", "start",  "mid"};
   return std::ranges::find(words, word) != words.end();
 }
 

@@ -19,6 +19,7 @@ using sepcal::CsvReader;
 using sepcal::Error;
 using sepcal::parse_number;
 using sepcal::test::TemporaryFolder;
+using namespace std::string_literals;
 using namespace std::string_view_literals;
 
 namespace {
@@ -178,6 +179,24 @@ TEST_CASE("binary files name the byte") {
         "with LF or CRLF");
 }
 
+TEST_CASE("forms that nobody reads are named with the way out") {
+  for (const auto bytes : {"CDF\x01\0\0\0\0\0\0\0\x0a"sv, "CDF\x02\0\0\0\0\0\0\0\x0a"sv}) {
+    CHECK(refuse(bytes) ==
+          "flight.csv: this is a file of another form (classic netCDF), no CSV file; write it as "
+          "netCDF-4, which sepcal's Python package reads: nccopy -k netCDF-4 OLD.nc NEW.nc");
+  }
+  // By the format's table: kind, rows, columns, complex or not, the name's length, the name.
+  const std::string little = "\0\0\0\0\x05\0\0\0\x01\0\0\0\0\0\0\0\x07\0\0\0time_s\0"s;
+  const std::string big = "\0\0\x03\xe8\0\0\0\x05\0\0\0\x01\0\0\0\0\0\0\0\x07time_s\0"s;
+  for (const std::string& head : {little, big}) {
+    CHECK(refuse(head + std::string(40, '\0')) ==
+          "flight.csv: this is a file of another form (MATLAB 4), no CSV file; load it in MATLAB "
+          "and save it anew, which sepcal's Python package reads: save('log.mat', '-v7')");
+  }
+  CHECK(refuse("BZh91AY&SY") ==
+        "flight.csv: this is a file of another form (bzip2), no CSV file; unpack it: bunzip2");
+}
+
 TEST_CASE("UTF-8 is taken as it is, other bytes for Windows-1252") {
   CHECK(read_rows("a,b\n\xC2\xB5T,\xE2\x82\xAC\xF0\x9F\x9B\xA9\n") ==
         Rows{{"a", "b"}, {"\xC2\xB5T", "\xE2\x82\xAC\xF0\x9F\x9B\xA9"}});
@@ -235,6 +254,51 @@ TEST_CASE("thousands, and what may be either") {
   CHECK(numbers_of("a;b\n1.234,5;2\n27.65;2\n") == Numbers{{1234.5, 2.0}, {{}, 2.0}});
   CHECK(numbers_of("a\n\xE2\x88\x92"
                    "1.5\n2\n") == Numbers{{-1.5}, {2.0}});
+}
+
+/// A file of three variables as the standard's example has one: a scale, flags of readings that are
+/// missing and below the limit.
+const char* const icartt =
+    "19, 1001, V02_2016\n"
+    "Doe, Jane\n"
+    "An institute\n"
+    "Air data of a \"test aircraft\n"
+    "A MISSION\n"
+    "1, 1\n"
+    "2024, 05, 04, 2024, 06, 01\n"
+    "1.0\n"
+    "Time_Start, seconds, Time_Start, seconds from midnight UTC\n"
+    "3\n"
+    "1, 1, 0.1\n"
+    "-9999, -9999, -99999\n"
+    "TAS, m/s, Platform_AirSpeed\n"
+    "alt, m\n"
+    "press, hPa, Met_StaticPressure\n"
+    "0\n"
+    "1\n"
+    "LLOD_FLAG: -8888\n"
+    "Time_Start, TAS, alt, press\n"
+    "43200, 101.5, 1200, 9000\n"
+    "43201, -9999, 1201, 9001\n"
+    "43202, 102.5, -8888, -99999\n";
+
+TEST_CASE("ICARTT") {
+  CHECK(read_rows(icartt)[0] == Lines{"time_s", "TAS (m/s)", "alt (m)", "press (hPa)"});
+  CHECK(numbers_of(icartt) == Numbers{{43200.0, 101.5, 1200.0, 900.0},
+                                      {43201.0, {}, 1201.0, 0.1 * 9001},
+                                      {43202.0, 102.5, {}, {}}});
+  CHECK(notes_of(icartt) ==
+        Lines{"ICARTT: the 19 lines of the head give names and units, and which numbers are "
+              "missing ones",
+              "time is from 'Time_Start', in seconds"});
+  const TemporaryFolder folder;
+  CsvReader reader(folder.write(icartt));
+  CHECK(reader.text() == "Time_Start (seconds),TAS (m/s),alt (m),press (hPa)");
+  while (reader.next()) {
+    if (reader.line() == 22) CHECK(reader.text() == "43202,102.5,,");
+  }
+  // A head that is not whole is lines above the rows.
+  CHECK(read_rows("3, 1001\nx\na,b\n1,2\n3,4\n")[0] == Lines{"a", "b"});
 }
 
 TEST_CASE("lines above the rows") {
