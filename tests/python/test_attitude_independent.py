@@ -4,6 +4,9 @@
 Few seeds each of the study: `scripts/study field-strength`.
 """
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -118,6 +121,27 @@ def test_a_strength_of_the_readings_needs_a_flight() -> None:
         sensor.at_noise({"field": 0.1})
     with pytest.raises(sepcal.Error, match="field_strength is 'much'; give a number in uT, or"):
         sepcal.Magnetometer(field_strength="much")
+
+
+def test_readings_that_show_no_strength(tmp_path: Path) -> None:
+    """A fit and a check say so; and no calibration is without its strength."""
+    time = np.arange(50) * 0.1
+    flight = sepcal.Flight({
+        "time_s": time,
+        "mx_ut": 20 + 0.01 * np.sin(time),
+        "my_ut": np.full(50, 5.0),
+        "mz_ut": np.full(50, 45.0),
+    })  # fmt: skip
+    sensor = sepcal.Magnetometer(field_strength="auto")
+    with pytest.raises(sepcal.Error, match="lie on no ellipsoid"):
+        sepcal.fit(sensor, flight)
+    assert sepcal.check(sensor, flight).refused
+    base = sepcal.fit(sepcal.Magnetometer(field_strength=53), sepcal.datasets.load("magnetometer"))
+    damaged = base.to_dict()
+    damaged["options"]["field_strength"] = []
+    (tmp_path / "damaged.json").write_text(json.dumps(damaged))
+    with pytest.raises(sepcal.Error, match="where the field's strength should"):
+        sepcal.load(tmp_path / "damaged.json")
 
 
 def test_the_app_takes_the_strength_of_the_readings(magnetometer: Bench) -> None:

@@ -12,6 +12,8 @@ import re
 import zipfile
 from typing import IO
 
+from sepcal.whole_files import open_scratch_part
+
 CHUNK = 2**20  # [bytes]
 MOST_CELLS = 8_000_000  # of a sheet's box, each of 32 bytes
 SPARSEST = 4  # cells of the box for each that is there
@@ -42,7 +44,7 @@ def copy_if_safe(file: str, folder: str) -> str | None:
         with zipfile.ZipFile(file) as packed, zipfile.ZipFile(copy, "w") as plain:
             for name in dict.fromkeys(packed.namelist()):
                 look = _Look()
-                with packed.open(name) as opened, plain.open(name, "w", force_zip64=True) as part:
+                with packed.open(name) as opened, open_scratch_part(plain, name) as part:
                     if name.lower() == SHARED_TEXTS:
                         longest = max(longest, _copy_texts(opened, part))
                     elif not _copy(opened, part, look):

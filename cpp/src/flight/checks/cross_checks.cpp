@@ -294,7 +294,8 @@ void note_implausible(const Log& log, const Settings& settings, std::vector<LogN
     return reading;
   };
   const auto set = settings.find("field_strength");
-  const auto strength = set == settings.end() ? std::nullopt : std::optional(set->second.front());
+  const bool is_given = set != settings.end() && !set->second.empty();  // else to be found
+  const auto strength = is_given ? std::optional(set->second.front()) : std::nullopt;
   for (const probes::Implausible& found : probes::find_implausible(find, strength)) {
     const bool said = std::ranges::any_of(notes, [&](const LogNote& note) {
       return note.kind == "units" && std::ranges::any_of(found.headers, [&](const auto& header) {

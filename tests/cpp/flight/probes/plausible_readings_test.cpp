@@ -103,6 +103,23 @@ TEST_CASE("a yaw that counts its turns in radians") {
         .add("r", UnitKind::rate, rate)
         .describe();
   };
+  const auto with_field = [&](const Values& values) {
+    Values x, y, z;
+    for (const double angle : yaw) {  // level, with hard iron
+      x.push_back(20.0 * std::cos(angle) + 8.0);
+      y.push_back(-20.0 * std::sin(angle) - 5.0);
+      z.push_back(45.0);
+    }
+    return Readings()
+        .add("yaw", UnitKind::angle, values)
+        .add("mx", UnitKind::field, x)
+        .add("my", UnitKind::field, y)
+        .add("mz", UnitKind::field, z)
+        .describe();
+  };
+  CHECK(with_field(yaw).empty());
+  REQUIRE(with_field(in_degrees).size() == 1);
+  CHECK(with_field(in_degrees)[0].ends_with("--map yaw_deg=yaw_rad reads it so"));
   CHECK(with_course(yaw).empty());
   CHECK(with_rate(yaw).empty());
   REQUIRE(with_course(in_degrees).size() == 1);
