@@ -26,7 +26,7 @@ std::vector<std::string> cut_at(std::string text, std::string_view mark) {
 std::vector<std::string> choices_of(const CLI::Option& option,
                                     const std::vector<std::string>& effects) {
   constexpr std::string_view before = "; one of ";
-  const std::string sentence = option.get_description();
+  const std::string& sentence = option.get_description();
   const std::string value = option.get_type_name();
   const std::size_t at = sentence.rfind(before);
   if (at != std::string::npos) return cut_at(sentence.substr(at + before.size()), ", ");

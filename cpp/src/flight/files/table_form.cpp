@@ -284,7 +284,7 @@ class Recogniser {
     choose_layout();
     find_numbers();
     if (icartt_) {
-      take_icartt_head();
+      take_icartt_head(*icartt_);
     } else {
       read_head();
     }
@@ -299,7 +299,7 @@ class Recogniser {
  private:
   void choose_layout() {
     if (icartt_) {
-      lay_out_icartt();
+      lay_out_icartt(*icartt_);
     } else {
       find_layout();
     }
@@ -322,27 +322,27 @@ class Recogniser {
     }
   }
 
-  void lay_out_icartt() {
-    lines_ = std::span(all_).first(std::min(icartt_->lines + most_lines, all_.size()));
+  void lay_out_icartt(const IcarttHead& head) {
+    lines_ = std::span(all_).first(std::min(head.lines + most_lines, all_.size()));
     layout_.by = &delimiters.front();
-    layout_.first_row = icartt_->lines;
-    layout_.cells = icartt_->columns.size();
-    layout_.lines.resize(icartt_->lines);
-    for (const std::string_view line : lines_.subspan(icartt_->lines)) {
+    layout_.first_row = head.lines;
+    layout_.cells = head.columns.size();
+    layout_.lines.resize(head.lines);
+    for (const std::string_view line : lines_.subspan(head.lines)) {
       layout_.lines.push_back(cut(line, layout_.by->mark, texts_));
     }
   }
 
-  void take_icartt_head() {
-    form_.header_line = icartt_->lines;
-    for (const IcarttColumn& column : icartt_->columns) {
+  void take_icartt_head(const IcarttHead& head) {
+    form_.header_line = head.lines;
+    for (const IcarttColumn& column : head.columns) {
       names_.push_back(column.name);
       units_.push_back(column.unit);
     }
     note(
         fmt::format("ICARTT: the {} lines of the head give names and units, and which numbers are "
                     "missing ones",
-                    icartt_->lines));
+                    head.lines));
   }
 
   void find_layout() {
