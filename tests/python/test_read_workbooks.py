@@ -86,6 +86,32 @@ def far_from_the_corner(sheet) -> None:
             sheet.cell(row + 9, column + 5, f"c{column}" if row == 0 else row * 0.5 + column)
 
 
+FORMATS = [
+    "[$-409]m/d/yy h:mm AM/PM;@",
+    "[$-F400]h:mm:ss\\ AM/PM",
+    "yyyy\\-mm\\-dd hh:mm:ss",
+    'yyyy\\-mm\\-dd"T"hh:mm:ss.000',
+    "[Red]0.0",
+    "#,##0.00_);[Red]\\(#,##0.00\\)",
+    '0.0" s"',
+    '0.0 "m/s";-0.0 "m/s"',
+    "[h]:mm:ss",
+    "mm:ss.0",
+    "d.m.yyyy;@",
+    "0.00E+00",
+    "0\\ h",
+]
+
+
+def in_all_formats(sheet) -> None:
+    """Numbers, dates and spans of time as people show them."""
+    sheet.append([f"c{i}" for i in range(len(FORMATS))])
+    for row in range(2, 20):
+        for column, form in enumerate(FORMATS, 1):
+            cell = sheet.cell(row, column, 45416.4270833449 + row / 7)
+            cell.number_format = form
+
+
 def two_sheets(sheet) -> None:
     fill(sheet)
     other = sheet.parent.create_sheet("pilots")
@@ -94,7 +120,9 @@ def two_sheets(sheet) -> None:
     sheet.parent.create_sheet("empty")
 
 
-@pytest.mark.parametrize("change", [fill, with_formulas, far_from_the_corner, two_sheets])
+@pytest.mark.parametrize(
+    "change", [fill, with_formulas, far_from_the_corner, in_all_formats, two_sheets]
+)
 def test_the_same_text(change, tmp_path):
     file = save(tmp_path, change)
     one, other = tmp_path / "one", tmp_path / "other"
@@ -203,12 +231,13 @@ def with_error(sheet) -> None:
     sheet["D9"].data_type = "e"
 
 
-def in_colours(sheet) -> None:
+def of_two_minds(sheet) -> None:
+    """A date where it is negative, as one might think."""
     fill(sheet)
-    sheet["A3"].number_format = '0.0" s";[Red]-0.0'
+    sheet["A3"].number_format = "0.0;d"
 
 
-@pytest.mark.parametrize("change", [far_out, with_error, in_colours])
+@pytest.mark.parametrize("change", [far_out, with_error, of_two_minds])
 def test_what_is_left_to_openpyxl(change, tmp_path):
     file = save(tmp_path, change)
     assert copy_if_safe(str(file), str(tmp_path)) is None
@@ -216,6 +245,15 @@ def test_what_is_left_to_openpyxl(change, tmp_path):
     assert "time_s" in flight.columns
     if change is with_error:
         assert np.isnan(flight["airspeed (kt)"][7])
+
+
+def test_a_chain_of_formulas_is_no_sheet(tmp_path):
+    """Excel's list of the cells that have one: a few of a far column."""
+    file = save(tmp_path)
+    chain = b"".join(b'<c r="ZZ%d" i="1"/>' % row for row in range(1, 400))
+    with zipfile.ZipFile(file, "a") as parts:
+        parts.writestr("xl/calcChain.xml", b"<calcChain>" + chain + b"</calcChain>")
+    assert copy_if_safe(str(file), str(tmp_path)) is not None
 
 
 @pytest.mark.parametrize(

@@ -26,10 +26,11 @@ SHARED_TEXTS, SHARED_TEXT = "xl/sharedstrings.xml", b' t="s"'
 # Errors, which it reads as empty; dates as text, and dates since 1904.
 LEFT_TO_OPENPYXL = re.compile(rb""" t="[ed]"|date1904\s*=\s*["'](?:1|true)""")
 LEFT_MARKS = (b' t="e"', b' t="d"', b"date1904")
-# What is a date's for both: letters of dates alone, and what stands between them.
+# A format of numbers is a date's by a letter of dates that is no part of these.
 FORMAT = re.compile(rb'formatCode="([^"]*)"')
 LETTER_OF_DATES = re.compile(rb"[dmyhs]", re.IGNORECASE)
-DATES = re.compile(rb"(?:[dmyhs:/. T,0-]|\\[-/. :T,]|AM/PM|;@)+", re.IGNORECASE)
+NO_DATES = re.compile(rb"\[[^\[\]]*\]|&quot;.*?&quot;|[\\_*][^dmyhs]", re.IGNORECASE)
+DOUBTFUL = re.compile(rb"[\[\]\\_&]")
 
 
 def copy_if_safe(file: str, folder: str) -> str | None:
@@ -60,6 +61,7 @@ class _Look:
 
     def __init__(self) -> None:
         self.cells = self.rows = self.columns = self.texts = 0
+        self.is_sheet = False
 
     def take(self, piece: bytes) -> bool:
         """Looks at whole tags. Returns whether python-calamine reads them as openpyxl does."""
@@ -74,14 +76,14 @@ class _Look:
             self.rows = max(self.rows, *map(int, {row for _, row in found}))
             self.columns = max(self.columns, *map(_number_of, {column for column, _ in found}))
             self.texts += piece.count(SHARED_TEXT)
-        box = self.rows * self.columns
-        return box <= MOST_CELLS and all(
-            DATES.fullmatch(form) or not LETTER_OF_DATES.search(form)
-            for form in FORMAT.findall(piece)
-        )
+        self.is_sheet = self.is_sheet or b"sheetData" in piece
+        return not any(map(_is_doubtful, FORMAT.findall(piece)))
 
-    def is_dense(self) -> bool:
-        return self.rows * self.columns <= SPARSEST * self.cells + FEW_CELLS
+    def has_dense_box(self) -> bool:
+        """Of a sheet; a chain of formulas names cells too."""
+        box = self.rows * self.columns
+        is_dense = box <= min(MOST_CELLS, SPARSEST * self.cells + FEW_CELLS)
+        return is_dense or not self.is_sheet
 
 
 def _copy(opened: IO[bytes], part: IO[bytes], look: _Look) -> bool:
@@ -94,7 +96,7 @@ def _copy(opened: IO[bytes], part: IO[bytes], look: _Look) -> bool:
         rest = piece[cut:]
         if len(rest) > CHUNK or not look.take(piece[:cut]):
             return False
-    return look.take(rest) and look.is_dense()
+    return look.take(rest) and look.has_dense_box()
 
 
 def _copy_texts(opened: IO[bytes], part: IO[bytes]) -> int:
@@ -108,6 +110,12 @@ def _copy_texts(opened: IO[bytes], part: IO[bytes]) -> int:
         if longest > CHUNK:
             break  # far too long: what is left is not read
     return longest
+
+
+def _is_doubtful(form: bytes) -> bool:
+    """Whether a number in this format may be a date for one of the two alone."""
+    first, _, others = NO_DATES.sub(b"", form).partition(b";")
+    return bool(DOUBTFUL.search(first + others) or LETTER_OF_DATES.search(others))
 
 
 def _number_of(column: bytes) -> int:
