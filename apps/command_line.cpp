@@ -255,7 +255,7 @@ std::string table_of(Instrument& instrument, const std::string& called) {
   CLI::App cli(instrument.summary(), called);
   const CommandLine command_line(instrument, cli);
   complete(cli);
-  return table_of(cli);
+  return table_of(cli, instrument.models());
 }
 
 }  // namespace sepcal::app

@@ -10,7 +10,7 @@ namespace sepcal::app {
 void ExportArguments::add_to(CLI::App& verb) {
   verb.add_option("--to", target_,
                   "c or cpp, a header with the whole correction; px4 or ardupilot, parameters")
-      ->type_name("TARGET")
+      ->type_name("c|cpp|px4|ardupilot")
       ->required();
   const auto read_sensor = [this](const std::string& text) {
     sensor_ = static_cast<std::uint32_t>(
@@ -26,7 +26,7 @@ void ExportArguments::add_to(CLI::App& verb) {
       ->type_name("ID");
   verb.add_option("--airspeed-sensor", airspeed_sensor_,
                   "of a tube: membrane, or sdp3x (SDP31, 32, 33) [by the device id or the log]")
-      ->type_name("KIND");
+      ->type_name("membrane|sdp3x");
   verb.add_option(
           "--cal-air", cal_air_,
           "of PX4 with an SDP3x: CAL_AIR_CMODEL, CAL_AIR_TUBELEN [m], CAL_AIR_TUBED_MM [the "
@@ -35,13 +35,13 @@ void ExportArguments::add_to(CLI::App& verb) {
   verb.add_option("--logged-airspeed", logged_airspeed_,
                   "what a logged airspeed is: true or equivalent, which autopilots call indicated "
                   "[true]")
-      ->type_name("KIND");
+      ->type_name("true|equivalent");
   verb.add_option("--rotation", rotation_,
                   "of a magnetometer for an autopilot, which can't turn it: keep, the calibration "
                   "as it is less its rotation (the symmetric factor of C^-1), or refit, the "
                   "symmetric matrix that fits the flight best [the better by its largest error of "
                   "heading]")
-      ->type_name("HOW");
+      ->type_name("keep|refit");
   verb.add_option("--mounting", mounting_,
                   "of PX4: how the sensor is turned, for CAL_MAGn_ROT, where the log has it turned "
                   "into body axes [deg]")
@@ -53,7 +53,7 @@ void ExportArguments::add_to(CLI::App& verb) {
                 "of a header: computes in float, for a processor that has no double");
   verb.add_option("--without", options_.without,
                   "leaves an effect out and fits the rest anew; may be repeated")
-      ->type_name("E")
+      ->type_name("EFFECT")
       ->take_all()
       ->allow_extra_args(false);
   verb.add_flag("--force", options_.force,

@@ -69,6 +69,8 @@ constexpr std::array examples{
     Example{"apply", "flight.csv base.json -o corrected.csv", "another.csv base.json -o - | head"},
     Example{"export", "base.json --to {4} -o exported",
             "base.json flight.csv --to cpp --float -o correction.hpp"},
+    Example{"join", "sensor.csv receiver.csv -o flight.csv",
+            "sensor.csv receiver.csv --how linear --offset -0.2 -o flight.csv"},
     Example{"simulate", "-o flight.csv --truth truth.json", "-o flight.csv --rows 2000 --seed 7"},
     Example{"effects", "", "--json"},
     Example{"two-step", "flight.csv --geometry aircraft.json -o two.json",
@@ -160,10 +162,9 @@ std::string HelpPage::make_help(const CLI::App* app, std::string called,
   }
   const std::size_t last = called.rfind(' ');
   if (last != std::string::npos && app->get_parent() != nullptr) {
-    page += "\nExamples:\n";
-    for (const std::string& example : examples_of(called.substr(0, last), app->get_name())) {
-      page += "  " + example + "\n";
-    }
+    const auto lines = examples_of(called.substr(0, last), app->get_name());
+    if (!lines.empty()) page += "\nExamples:\n";
+    for (const std::string& example : lines) page += "  " + example + "\n";
   }
   return page + "\n" + app->get_footer();
 }

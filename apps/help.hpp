@@ -34,7 +34,8 @@ std::vector<const CLI::Option*> arguments_of(const CLI::App& app);
 /// "Usage: sepcal mag fit FLIGHT [OPTIONS]", a line.
 std::string usage_of(const CLI::App& app, const std::string& called);
 
-/// Two commands that do something sensible: "sepcal mag fit flight.csv ...".
+/// Two commands that do something sensible: "sepcal mag fit flight.csv ..."; none of a verb that
+/// has none.
 std::vector<std::string> examples_of(const std::string& called, const std::string& verb);
 
 /// What the exit codes are, for the end of a page.

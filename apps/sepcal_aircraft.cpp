@@ -647,7 +647,7 @@ std::string aircraft_table() {
   CLI::App cli(summary, "sepcal aircraft");
   const AircraftApp app(cli);
   complete(cli);
-  return table_of(cli);
+  return table_of(cli, {"path", "aircraft"});
 }
 
 }  // namespace sepcal::app

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // sepcal-mag: calibrates three-axis magnetometers.
-#include <fmt/format.h>
-
 #include <optional>
 
-#include "flight/probes/ellipsoid.hpp"
 #include "instrument.hpp"
 #include "option_values.hpp"
 #include "programs.hpp"
 #include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
-#include "terminal.hpp"
 
 namespace sepcal::app {
 namespace {
@@ -37,7 +33,7 @@ class Magnetometer final : public Instrument {
             ->expected(0, 1);
   }
 
-  std::shared_ptr<const Probe> probe(const Flight& flight) const override {
+  std::shared_ptr<const Probe> probe(const Flight& /*flight*/) const override {
     if (!strength_.empty()) {
       if (is_mounting_given()) {
         throw Error(
@@ -50,16 +46,8 @@ class Magnetometer final : public Instrument {
             "--field and --field-strength contradict each other; keep --field where the attitude "
             "is logged");
       }
-      if (strength_ != "auto") {
-        return attitude_independent_probe(parse_value("--field-strength", strength_));
-      }
-      const double radius = probes::radius_of_readings(flight);
-      tell_notes({fmt::format(
-          "{}: the field's strength is taken for the mean radius of the readings' ellipsoid, "
-          "{:.6g} in the log's own unit or counts: scale errors are against that, and the "
-          "calibrated field is in the same unit",
-          flight.name(), radius)});
-      return attitude_independent_probe(radius);
+      if (strength_ == "auto") return attitude_independent_probe(std::nullopt);
+      return attitude_independent_probe(parse_value("--field-strength", strength_));
     }
     std::optional<std::array<double, 3>> field;
     if (!field_.empty()) field = parse_field();

@@ -3,29 +3,38 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/name_list.hpp"
 #include "help.hpp"
+#include "sepcal/detail/flight/effect_catalogue.hpp"
 
 namespace sepcal::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of "...; one of sampling, global".
-std::vector<std::string> choices_in(const std::string& sentence) {
-  constexpr std::string_view before = "; one of ";
-  const std::size_t at = sentence.rfind(before);
-  std::vector<std::string> choices;
-  if (at == std::string::npos) return choices;
-  std::string rest = sentence.substr(at + before.size());
-  for (std::size_t comma = 0; comma != std::string::npos;) {
-    comma = rest.find(", ");
-    choices.push_back(rest.substr(0, comma));
-    if (comma != std::string::npos) rest.erase(0, comma + 2);
+std::vector<std::string> cut_at(std::string text, std::string_view mark) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at != std::string::npos;) {
+    at = text.find(mark);
+    parts.push_back(text.substr(0, at));
+    if (at != std::string::npos) text.erase(0, at + mark.size());
   }
-  return choices;
+  return parts;
 }
 
-Json option_json(const CLI::Option& option) {
+/// Of "...; one of sampling, global", or of a value "smooth|linear|held"; of an EFFECT those.
+std::vector<std::string> choices_of(const CLI::Option& option,
+                                    const std::vector<std::string>& effects) {
+  constexpr std::string_view before = "; one of ";
+  const std::string& sentence = option.get_description();
+  const std::string value = option.get_type_name();
+  const std::size_t at = sentence.rfind(before);
+  if (at != std::string::npos) return cut_at(sentence.substr(at + before.size()), ", ");
+  if (value.find('|') != std::string::npos) return cut_at(value, "|");
+  return value == "EFFECT" ? effects : std::vector<std::string>();
+}
+
+Json option_json(const CLI::Option& option, const std::vector<std::string>& effects) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
@@ -36,10 +45,24 @@ Json option_json(const CLI::Option& option) {
   return {{"names", names},
           {"value", value},
           {"sentence", sentence_of(option)},
-          {"choices", choices_in(option.get_description())}};
+          {"choices", choices_of(option, effects)}};
 }
 
-Json verb_json(const CLI::App& verb, const std::string& called) {
+/// Effects that have a name of their own, each once: those of a port need a driver.
+std::vector<std::string> names_in_catalogues(const std::vector<std::string>& models) {
+  std::vector<std::string> names;
+  for (const std::string& model : models) {
+    for (const CataloguedEffect& effect : effect_catalogue(model)) {
+      if (effect.name.find('[') == std::string::npos && !base::is_among(names, effect.name)) {
+        names.push_back(effect.name);
+      }
+    }
+  }
+  return names;
+}
+
+Json verb_json(const CLI::App& verb, const std::string& called,
+               const std::vector<std::string>& effects) {
   Json arguments = Json::array();
   for (const CLI::Option* argument : arguments_of(verb)) {
     arguments.push_back(
@@ -48,8 +71,9 @@ Json verb_json(const CLI::App& verb, const std::string& called) {
   Json groups = Json::array();
   for (const std::string& group : groups_of(verb)) {
     Json options = Json::array();
-    for (const CLI::Option* option : options_of(verb, group))
-      options.push_back(option_json(*option));
+    for (const CLI::Option* option : options_of(verb, group)) {
+      options.push_back(option_json(*option, effects));
+    }
     groups.push_back({{"name", group}, {"options", std::move(options)}});
   }
   return {{"name", verb.get_name()},
@@ -62,10 +86,11 @@ Json verb_json(const CLI::App& verb, const std::string& called) {
 
 }  // namespace
 
-std::string table_of(const CLI::App& cli) {
+std::string table_of(const CLI::App& cli, const std::vector<std::string>& models) {
+  const std::vector<std::string> effects = names_in_catalogues(models);
   Json verbs = Json::array();
   for (const CLI::App* verb : cli.get_subcommands({})) {
-    verbs.push_back(verb_json(*verb, cli.get_name()));
+    verbs.push_back(verb_json(*verb, cli.get_name(), effects));
   }
   const std::string& called = cli.get_name();
   return Json{{"name", called.substr(called.rfind(' ') + 1)},

@@ -15,8 +15,8 @@
 
 namespace sepcal::app {
 
-/// The JSON of an instrument's verbs. `cli` is complete.
-std::string table_of(const CLI::App& cli);
+/// The JSON of an instrument's verbs. `cli` is complete; effects are of the catalogues of `models`.
+std::string table_of(const CLI::App& cli, const std::vector<std::string>& models);
 
 /// What a shell sources: "bash", "zsh" or "fish". `tables` are as table_of() gives them. Throws
 /// Error for another shell.

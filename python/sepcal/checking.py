@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sepcal import _core
 from sepcal.aircraft import Aero, RigidAircraft
 from sepcal.arguments import checked
 from sepcal.flight import AnyFlight, Flight, to_flight
+from sepcal.options import to_core
 from sepcal.own_state_model import AnyModel, as_model
 from sepcal.pages import Page, Row
 from sepcal.plots import Backend, Theme
@@ -100,6 +102,14 @@ def check(
     model: AnyModel | Aero | RigidAircraft,
     flight: AnyFlight,
     *,
+    map: Mapping[str, str] | None = None,
+    ignore: Sequence[str] | None = None,
+    where: str | None = None,
+    from_time: float | None = None,
+    to_time: float | None = None,
+    drop_invalid: bool = False,
+    drop_repeats: Sequence[str] | None = None,
+    join: str | None = None,
     delimiter: str = "",
     decimal: str = "",
 ) -> FlightCheck:
@@ -110,6 +120,14 @@ def check(
     Args:
         model: A probe, a FlightPath, Aero or RigidAircraft, or a model of your own, as for the fit.
         flight: The log, or what read() makes a flight of.
+        map: Of what a fit is to take of the log, as its options: columns under other headers.
+        ignore: Likewise, columns that are not looked at.
+        where: Likewise, a condition that rows are to fulfil.
+        from_time: Likewise [s].
+        to_time: Likewise [s].
+        drop_invalid: Likewise, of rows with a cell that is no number.
+        drop_repeats: Likewise, of rows between the samples of these columns.
+        join: Likewise, of quantities that are logged at other times.
         delimiter: Of a file, as of read().
         decimal: Likewise.
 
@@ -118,21 +136,37 @@ def check(
         result, what to do), `refused` (what a fit would say instead of fitting; empty: nothing).
 
     Raises:
-        Error: A model that takes no flight.
+        Error: A model that takes no flight, or what fit() says of these options.
 
     Example:
         >>> flight = sepcal.datasets.load("pitot")
         >>> check = sepcal.check(sepcal.PitotStatic(), flight)
         >>> check.refused, [note.kind for note in check.notes], round(check.rate)
         ('', [], 4)
+        >>> early = sepcal.check(sepcal.PitotStatic(), flight, where="altitude_m < 310")
+        >>> early.to_dict()["inputs"]["rows_used"] < check.to_dict()["inputs"]["rows_used"]
+        True
     """
     if isinstance(model, Flight | str | os.PathLike):
         raise _core.Error("the model comes first, then the flight: sepcal.check(model, flight)")
     form = {"delimiter": delimiter, "decimal": decimal}
+    options = to_core(
+        {
+            "map": map,
+            "ignore": ignore,
+            "where": where,
+            "from_time": from_time,
+            "to_time": to_time,
+            "drop_invalid": drop_invalid,
+            "drop_repeats": drop_repeats,
+            "join": join,
+            **form,
+        }
+    )
     if isinstance(model, Aero | RigidAircraft | FlightPath):
         name = model._aircraft_options()["model"]
         chosen = to_flight(flight, "check(model, ", "", form)
-        return FlightCheck(states_module().check(name, chosen._core), chosen)
+        return FlightCheck(states_module().check(name, chosen._core, options), chosen)
     model = as_model(model)
     chosen = to_flight(flight, "check(model, ", model, form)
-    return FlightCheck(_core.check(model._core, chosen._core), chosen)
+    return FlightCheck(_core.check(model._core, chosen._core, options), chosen)

@@ -99,6 +99,10 @@ def fit(
     refuse_log_choice(options)
     if getattr(model, "mounting", None) is not None:
         raise _core.Error("mounting turns the readings of a Flight; turn these yourself")
+    if getattr(model, "field_strength", None) == "auto":
+        raise _core.Error(
+            "field_strength='auto' is found in a Flight; give these the strength in uT"
+        )
     data = by_name(columns_of_model or {})
     there = set(data)
     needed = [*model._columns_in(data), *model._measured_in(data), *({"time"} & there)]

@@ -297,7 +297,9 @@ class Magnetometer(Model):
     Args:
         field: The Earth's field, north, east, down [uT]; None where the flight logs it.
         field_strength: Only |h| [uT] is known: no attitude is needed, and a rotation, C_eta, can't
-            be seen. Every parameter is nonlinear; the output `field` is zero in every row.
+            be seen. Every parameter is nonlinear; the output `field` is zero in every row. "auto":
+            nothing is known, and it is taken for the mean radius of the readings' ellipsoid in the
+            flight of a fit, in the readings' own unit or counts.
         mounting: Roll, pitch, yaw [deg] by which the sensor is turned against the body, as
             autopilots have it, or a quaternion w, x, y, z from the sensor's axes to the body's: a
             Flight's readings are turned so before anything else. "estimate": as the flight of a
@@ -318,7 +320,7 @@ class Magnetometer(Model):
         self,
         field: Vector | None = None,
         *,
-        field_strength: float | None = None,
+        field_strength: float | Literal["auto"] | None = None,
         mounting: Sequence[float] | Literal["estimate"] | None = None,
     ) -> None:
         if field is not None and field_strength is not None:
@@ -332,7 +334,15 @@ class Magnetometer(Model):
             raise _core.Error(f'mounting is {mounting!r}; give three angles [deg] or "estimate"')
         strength_alone = ", north, east, down, or the field's strength alone as field_strength"
         self.field = None if field is None else _to_vector("field", field, strength_alone)
-        self.field_strength = None if field_strength is None else float(field_strength)
+        if isinstance(field_strength, str) and field_strength != "auto":
+            raise _core.Error(
+                f'field_strength is {field_strength!r}; give a number in uT, or "auto"'
+            )
+        self.field_strength = (
+            field_strength
+            if field_strength is None or isinstance(field_strength, str)
+            else float(field_strength)
+        )
         self.mounting = (
             mounting if mounting is None or isinstance(mounting, str) else _to_turn(mounting)
         )
@@ -341,7 +351,7 @@ class Magnetometer(Model):
         super().__init__(
             _core.magnetometer(self.field, turned)
             if self.field_strength is None
-            else _core.attitude_independent_magnetometer(self.field_strength)
+            else _core.attitude_independent_magnetometer(self._strength())
         )
 
     def at_noise(self, noise: Mapping[str, float]) -> Model:
@@ -354,7 +364,15 @@ class Magnetometer(Model):
         """
         if self.field_strength is None:
             return self
-        return Model(_core.attitude_independent_magnetometer(self.field_strength, noise["field"]))
+        if self._strength() is None:
+            raise _core.Error(
+                "field_strength='auto' is found in the flight of a fit; give it in uT"
+            )
+        return Model(_core.attitude_independent_magnetometer(self._strength(), noise["field"]))
+
+    def _strength(self) -> float | None:
+        """None where the flight of a fit is to show it."""
+        return None if isinstance(self.field_strength, str) else self.field_strength
 
     def _settings(self) -> dict[str, Any]:
         if self.field_strength is not None:

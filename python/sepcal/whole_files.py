@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import os
+import zipfile
 from collections.abc import Mapping
-from typing import BinaryIO, TextIO
+from typing import IO, BinaryIO, TextIO
 
 from sepcal import _core
 from sepcal.arguments import Misuse, shown
@@ -34,6 +35,11 @@ def open_scratch_text(file: str) -> TextIO:
 def open_scratch(file: str) -> BinaryIO:
     """The same, to be written as bytes."""
     return open(file, "wb")
+
+
+def open_scratch_part(archive: zipfile.ZipFile, name: str) -> IO[bytes]:
+    """A part of an archive in such a folder, to be written."""
+    return archive.open(name, "w", force_zip64=True)
 
 
 def write_whole(texts: Mapping[str, str]) -> None:

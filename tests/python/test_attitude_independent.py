@@ -4,6 +4,9 @@
 Few seeds each of the study: `scripts/study field-strength`.
 """
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -91,6 +94,63 @@ def test_field_and_strength_contradict_each_other() -> None:
     with pytest.raises(sepcal.Error, match="field_strength is -1; give the field's strength in uT"):
         sepcal.Magnetometer(field_strength=-1)
     assert repr(sepcal.Magnetometer(field_strength=48)) == "Magnetometer(field_strength=48.0)"
+
+
+def test_a_strength_of_the_readings() -> None:
+    """The mean radius of the ellipsoid; the shape is that against a given strength."""
+    flight = sepcal.datasets.load("magnetometer")
+    auto = sepcal.fit(sepcal.Magnetometer(field_strength="auto"), flight)
+    found = auto.to_dict()["options"]["field_strength"]
+    given = sepcal.fit(sepcal.Magnetometer(field_strength=found), flight)
+    for name in given.parameters:
+        assert auto[name].value == given[name].value
+    truth = float(np.linalg.norm([19.7, -1.4, 49.4]))
+    assert abs(found / truth - 1) < 0.05  # scale errors of some per cent
+    told = "the field's strength is taken for the mean radius of the readings' ellipsoid"
+    assert sum(told in note for note in auto.notes) == 1
+    assert not any(told in note for note in given.notes)
+    assert auto.apply(flight)
+
+
+def test_a_strength_of_the_readings_needs_a_flight() -> None:
+    sensor = sepcal.Magnetometer(field_strength="auto")
+    assert repr(sensor) == "Magnetometer(field_strength='auto')"
+    with pytest.raises(sepcal.Error, match="'auto' is found in a Flight; give these"):
+        sepcal.fit(sensor, read_field(2, 0.3))
+    with pytest.raises(sepcal.Error, match="'auto' is found in the flight of a fit"):
+        sensor.at_noise({"field": 0.1})
+    with pytest.raises(sepcal.Error, match="field_strength is 'much'; give a number in uT, or"):
+        sepcal.Magnetometer(field_strength="much")
+
+
+def test_readings_that_show_no_strength(tmp_path: Path) -> None:
+    """A fit and a check say so; and no calibration is without its strength."""
+    time = np.arange(50) * 0.1
+    flight = sepcal.Flight({
+        "time_s": time,
+        "mx_ut": 20 + 0.01 * np.sin(time),
+        "my_ut": np.full(50, 5.0),
+        "mz_ut": np.full(50, 45.0),
+    })  # fmt: skip
+    sensor = sepcal.Magnetometer(field_strength="auto")
+    with pytest.raises(sepcal.Error, match="lie on no ellipsoid"):
+        sepcal.fit(sensor, flight)
+    assert sepcal.check(sensor, flight).refused
+    base = sepcal.fit(sepcal.Magnetometer(field_strength=53), sepcal.datasets.load("magnetometer"))
+    damaged = base.to_dict()
+    damaged["options"]["field_strength"] = []
+    (tmp_path / "damaged.json").write_text(json.dumps(damaged))
+    with pytest.raises(sepcal.Error, match="where the field's strength should"):
+        sepcal.load(tmp_path / "damaged.json")
+
+
+def test_the_app_takes_the_strength_of_the_readings(magnetometer: Bench) -> None:
+    put_readings(magnetometer, read_field(3, 0.4), 10, "mgauss")
+    fitted = magnetometer.run("fit", "flight.csv", "--field-strength", "auto", "-o", "auto.json")
+    assert fitted.code == 0, fitted.err
+    assert "taken for the mean radius of the readings' ellipsoid" in fitted.err
+    checked = magnetometer.run("check", "flight.csv", "--field-strength", "auto", "--json")
+    assert checked.result["refused"] is None
 
 
 def put_readings(bench: Bench, columns: dict[str, Array], factor: float, unit: str) -> None:

@@ -31,6 +31,33 @@ def kinds(result: dict) -> list[str]:
     return [note["kind"] for note in result["notes"]]
 
 
+# --- what of a log
+
+
+def test_python_chooses_as_the_app_does(tube: Bench) -> None:
+    """Columns, rows and times."""
+    log = Log(tube.folder / "tube.csv")
+    log.replace("vn_mps", log.column("vn_mps"), "north")
+    (tube.folder / "tube.csv").write_text(log.text())
+    typed = tube.run(
+        "check", "tube.csv", "--map", "vn_mps=north", "--where", "time_s < 40",
+        "--from", "3.5", "--json",
+    )  # fmt: skip
+    assert typed.code == 0, typed.err
+    check = sepcal.check(
+        sepcal.PitotStatic(), tube.folder / "tube.csv", map={"vn_mps": "north"},
+        where="time_s < 40", from_time=3.5,
+    )  # fmt: skip
+    told = check.to_dict()
+    assert told["inputs"]["rows_used"] == typed.result["inputs"]["rows_used"]
+    assert 0 < told["inputs"]["rows_used"] < told["inputs"]["rows"]
+    assert told["columns"] == typed.result["columns"]
+    whole = sepcal.check(sepcal.PitotStatic(), tube.folder / "tube.csv")
+    assert "is missing" in whole.refused
+    with pytest.raises(sepcal.Error, match="names a column that is not there"):
+        sepcal.check(sepcal.PitotStatic(), sepcal.datasets.load("pitot"), map={"vn_kt": "VN"})
+
+
 # --- clean logs
 
 

@@ -91,6 +91,22 @@ def test_help(app: str, verb: str, tmp_path: Path) -> None:
     assert run(f"sepcal-{app}", verb, "--version", folder=tmp_path).out.startswith("sepcal ")
 
 
+@pytest.mark.parametrize("app", ["mag", "pitot"])
+def test_examples_of_join_run(app: str, tmp_path: Path) -> None:
+    """The sensor at 10 Hz, the receiver at 2 Hz and 0.2 s late."""
+    rows = [f"{i / 10},{20 + i % 7}\n" for i in range(300)]
+    (tmp_path / "sensor.csv").write_text("time_s,airspeed_mps\n" + "".join(rows))
+    rows = [f"{i / 2},{i % 5},{i % 3},0\n" for i in range(60)]
+    (tmp_path / "receiver.csv").write_text("time_s,vn_mps,ve_mps,vd_mps\n" + "".join(rows))
+    told = run(f"sepcal-{app}", "join", "--help", folder=tmp_path)
+    examples = told.out.partition("Examples:\n")[2].splitlines()
+    assert len(examples[:2]) == 2
+    for line in [line for line in examples if line.startswith("  sepcal-")]:
+        done = piped(line, tmp_path)
+        assert done.returncode == 0, (line, done.stderr)
+        assert "vn_mps" in (tmp_path / "flight.csv").read_text().splitlines()[0]
+
+
 def test_examples_run(folder: Path, tmp_path: Path) -> None:
     """Those of the magnetometer, on short flights that are called as the examples have them."""
     for name in ("flight.csv", "another.csv", "base.json"):
@@ -204,6 +220,12 @@ def test_bash_completes(folder: Path) -> None:
         "try sepcal-pitot fit --k-\n"
         'try sepcal mag fit --field ""\n'
         "try sepcal mag fit fl\n"
+        "try sepcal mag fit --join s\n"
+        'try sepcal pitot fit --join ""\n'
+        "try sepcal mag fit --effect bias_\n"
+        "try sepcal aircraft fit --effect imu_\n"
+        'try sepcal mag export base.json --to ""\n'
+        "try sepcal mag export base.json --rotation k\n"
     )
     done = piped(script, folder)
     assert (done.returncode, done.stderr) == (0, b"")
@@ -220,6 +242,12 @@ def test_bash_completes(folder: Path) -> None:
         "--k-alpha --k-beta",
         "",
         "",
+        "smooth",
+        "smooth linear held",
+        "bias_step bias_drift",
+        "imu_late",
+        "c cpp px4 ardupilot",
+        "keep",
     ]
 
 

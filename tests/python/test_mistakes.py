@@ -253,6 +253,9 @@ def test_an_option_that_is_nearly_one(tmp_path: Path) -> None:
     assert tried.code == 2
     assert "did you mean --k-alpha?" in tried.err
     assert run("sepcal-pitot", "fit", "log.csv", *PORTS, folder=tmp_path).code == 0
+    swapped = run("sepcal-mag", "fit", "log.csv", "--feild", "auto", folder=tmp_path)
+    assert swapped.code == 2
+    assert "did you mean --field?" in swapped.err
 
 
 # --- how often

@@ -18,7 +18,8 @@ std::string list_names(const std::vector<Variable>& variables);
 /// "a, b and 7 more", with at most `most` of them.
 std::string list_first(const std::vector<std::string>& names, std::size_t most);
 
-/// Levenshtein's distance: the fewest letters inserted, deleted or replaced.
+/// The fewest slips: a letter inserted, deleted or replaced, or two neighbours swapped (the optimal
+/// string alignment of Damerau).
 std::size_t count_slips(std::string_view from, std::string_view to);
 
 /// "; did you mean 'b'?" where one of the names is `name` but for so many slips, else "".

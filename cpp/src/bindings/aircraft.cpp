@@ -137,9 +137,10 @@ FoundIntervals intervals_on(const AircraftFit& fitted, const Flight& flight, dou
   return found_intervals(find_aircraft_intervals(fitted, flight, {.level = level, .names = names}));
 }
 
-Checked check_on(const std::string& model, const Flight& flight) {
+Checked check_on(const std::string& model, const Flight& flight,
+                 const CalibrationOptions& options) {
   const Released released;
-  return checked(check_aircraft(find_aircraft_model(model), flight));
+  return checked(check_aircraft(find_aircraft_model(model), flight, options.log));
 }
 
 /// As a fit with these options reads them; in the order of one that there is.

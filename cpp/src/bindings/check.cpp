@@ -12,9 +12,9 @@
 namespace sepcal::bindings {
 namespace {
 
-Checked check_flight(const Model& model, const Flight& flight) {
+Checked check_flight(const Model& model, const Flight& flight, const CalibrationOptions& options) {
   const Released released;
-  return checked(sepcal::check(probe_of(model), flight));
+  return checked(sepcal::check(probe_of(model), flight, options.log));
 }
 
 void define_parts(py::module_& module) {

@@ -225,7 +225,7 @@ void define_engine(py::module_& module) {
              [] { return Model(std::shared_ptr<const Probe>(pitot_static_probe())); });
   module.def(
       "attitude_independent_magnetometer",
-      [](double field_strength, double noise) {
+      [](std::optional<double> field_strength, double noise) {
         return Model(
             std::shared_ptr<const Probe>(attitude_independent_probe(field_strength, noise)));
       },

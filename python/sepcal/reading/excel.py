@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Excel's .xlsx by openpyxl: the sheet with the table is written as text, and read as a CSV is."""
+"""Excel's .xlsx: the sheet with the table is written as text, and read as a CSV is.
+
+By python-calamine where it is there and may, and by openpyxl, to the same text.
+"""
 
 from __future__ import annotations
 
 import csv
 import datetime
+import importlib
 import os
 import tempfile
 import warnings
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,13 +23,16 @@ from sepcal.reading.limits import Budget
 from sepcal.reading.rates import kinds_of
 from sepcal.reading.table import Table, listed
 from sepcal.reading.wanted import wanted
+from sepcal.reading.workbook_parts import copy_if_safe
 from sepcal.whole_files import open_scratch_text
 
 WORKBOOK = "xl/workbook.xml"
 MOST_CELLS = 50_000_000
 FEWEST_NUMBERS = 2  # of a row of numbers, times among them
-NUMBERS = (int, float, datetime.datetime, datetime.time)
+NUMBERS = {bool, int, float, datetime.datetime, datetime.time}
+AS_WRITTEN = {str, int, float, type(None)}  # by csv as by _text()
 ROWS_OF_A_LOG = 10
+LARGEST_COUNT = 1e15  # that a float holds without doubt
 
 
 @dataclass
@@ -51,11 +58,13 @@ def read_workbook(name: str, file: str, sha256: str, chosen: str | None) -> _cor
         try:
             with zipfile.ZipFile(file) as parts:
                 budget.take(sum(part.file_size for part in parts.infolist()), "the workbook")
-            with open(file, "rb") as opened:  # by its name openpyxl looks at the ending
-                book = openpyxl.load_workbook(
-                    opened, read_only=True, data_only=True, keep_links=False
-                )
-                sheets = _write_sheets(file, book, chosen, folder, budget)
+            sheets = _read_fast(file, chosen, folder, budget)
+            if sheets is None:
+                with open(file, "rb") as opened:  # by its name openpyxl looks at the ending
+                    book = openpyxl.load_workbook(
+                        opened, read_only=True, data_only=True, keep_links=False
+                    )
+                    sheets = _write_sheets(file, _sheets_of(book), chosen, folder, budget)
         except (_core.Error, MemoryError):
             raise
         except Exception as error:  # what openpyxl raises of damage is of any kind
@@ -66,28 +75,74 @@ def read_workbook(name: str, file: str, sha256: str, chosen: str | None) -> _cor
         return _read_text(name, sha256, sheet, others)
 
 
+def _read_fast(file: str, chosen: str | None, folder: str, budget: Budget) -> list[Sheet] | None:
+    """By python-calamine; None where openpyxl has to, or to say what is wrong."""
+    try:
+        calamine = importlib.import_module("python_calamine")
+    except ImportError:
+        return None
+    copy = copy_if_safe(file, folder)
+    if copy is None:
+        return None
+    try:
+        book = calamine.CalamineWorkbook.from_path(copy)
+        names = [
+            sheet.name
+            for sheet in book.sheets_metadata
+            if sheet.typ == calamine.SheetTypeEnum.WorkSheet
+        ]
+        return _write_sheets(
+            file, {name: _rows_of(book, name) for name in names}, chosen, folder, budget
+        )
+    except calamine.CalamineError:
+        return None
+
+
+def _rows_of(book: Any, name: str) -> Iterator[Sequence[Any]]:  # noqa: ANN401
+    """A sheet's rows as openpyxl gives them: no cell is None, and a date has a time."""
+    sheet = book.get_sheet_by_name(name)
+    before = [None] * (sheet.start[1] if sheet.start else 0)
+    for row in sheet.iter_rows():
+        yield before + [
+            cell if type(cell) is float and not cell.is_integer() else _as_openpyxl(cell)
+            for cell in row
+        ]
+
+
+def _as_openpyxl(cell: object) -> object:
+    if isinstance(cell, float):
+        return int(cell) if cell.is_integer() and abs(cell) < LARGEST_COUNT else cell
+    if isinstance(cell, datetime.date) and not isinstance(cell, datetime.datetime):
+        return datetime.datetime.combine(cell, datetime.time())
+    return None if cell == "" else cell
+
+
+def _sheets_of(book: Any) -> dict[str, Iterable[Sequence[Any]]]:  # noqa: ANN401
+    for worksheet in book.worksheets:
+        worksheet.reset_dimensions()
+    return {sheet.title: sheet.iter_rows(values_only=True) for sheet in book.worksheets}
+
+
 def _write_sheets(
     file: str,
-    book: Any,  # noqa: ANN401
+    sheets: Mapping[str, Iterable[Sequence[Any]]],
     chosen: str | None,
     folder: str,
     budget: Budget,
 ) -> list[Sheet]:
-    names = [sheet.title for sheet in book.worksheets]
-    if chosen is not None and chosen not in names:
-        raise _core.Error(f"{file}: there is no sheet '{chosen}'; it has {listed(names)}")
-    sheets = []
-    for number, worksheet in enumerate(book.worksheets):
-        if chosen is not None and worksheet.title != chosen:
+    if chosen is not None and chosen not in sheets:
+        raise _core.Error(f"{file}: there is no sheet '{chosen}'; it has {listed(list(sheets))}")
+    written = []
+    for number, (name, rows) in enumerate(sheets.items()):
+        if chosen is not None and name != chosen:
             continue
-        worksheet.reset_dimensions()
-        sheet = Sheet(worksheet.title, os.path.join(folder, f"{number}.csv"))
-        _write(file, worksheet.iter_rows(values_only=True), sheet, budget)
-        sheets.append(sheet)
-    return sheets
+        sheet = Sheet(name, os.path.join(folder, f"{number}.csv"))
+        _write(file, rows, sheet, budget)
+        written.append(sheet)
+    return written
 
 
-def _write(file: str, rows: Iterable[tuple[Any, ...]], sheet: Sheet, budget: Budget) -> None:
+def _write(file: str, rows: Iterable[Sequence[Any]], sheet: Sheet, budget: Budget) -> None:
     """Writes the sheet as text without its empty rows; shorter rows end in empty cells."""
     cells = width = 0
     with open_scratch_text(sheet.text) as opened:
@@ -104,16 +159,15 @@ def _write(file: str, rows: Iterable[tuple[Any, ...]], sheet: Sheet, budget: Bud
                 )
             if not end:
                 continue
-            texts = [_text(cell) for cell in row[:end]]
-            budget.take(sum(map(len, texts)) + end, f"sheet '{sheet.name}'")
-            if sum(isinstance(cell, NUMBERS) for cell in row[:end]) >= FEWEST_NUMBERS:
+            written = [cell if type(cell) in AS_WRITTEN else _text(cell) for cell in row[:end]]
+            if sum(type(cell) in NUMBERS for cell in row[:end]) >= FEWEST_NUMBERS:
                 sheet.rows += 1
-            elif sheet.rows == 0 and len(texts) >= len(sheet.words):
-                sheet.words = texts
+            elif sheet.rows == 0 and end >= len(sheet.words):
+                sheet.words = list(map(_text, written))
             width = max(width, end) if sheet.rows else width
-            writer.writerow(
-                texts + [""] * (max(width, len(sheet.words)) - end if sheet.rows else 0)
-            )
+            if sheet.rows:
+                written += [""] * (max(width, len(sheet.words)) - end)
+            budget.take(writer.writerow(written), f"sheet '{sheet.name}'")
 
 
 def _text(cell: object) -> str:

@@ -42,13 +42,21 @@ class Topic:
     columns: dict[str, list[float]] = field(default_factory=dict)
     frame: str = ""
 
+    def __post_init__(self) -> None:
+        self.what = f"topic {self.name}"  # in messages
+
     def add(self, time: int, values: Mapping[str, float], budget: Budget) -> None:
         """A message; NaN for fields that it lacks."""
+        budget.take(8 * len(self.columns), self.what)
+        if values.keys() == self.columns.keys():  # nearly always
+            for name, value in values.items():
+                self.columns[name].append(value)
+            self.times.append(time)
+            return
         for name in values:
             if name not in self.columns and len(self.columns) < MOST_FIELDS:
-                budget.take(8 * len(self.times), f"topic {self.name}")
+                budget.take(8 * (len(self.times) + 1), self.what)
                 self.columns[name] = [np.nan] * len(self.times)
-        budget.take(8 * len(self.columns), f"topic {self.name}")
         self.times.append(time)
         for name, column in self.columns.items():
             column.append(values.get(name, np.nan))
@@ -78,7 +86,7 @@ def _read_topics(file: str) -> tuple[list[Topic], list[str], str]:
     records = load("mcap.records", file, "MCAP")
     topics: dict[int, Topic] = {}
     skipped: dict[str, None] = {}
-    decoders: dict[int, Any] = {}
+    decoders: dict[int, Any] = {}  # None: the channel is skipped
     schemas: dict[int, Any] = {}
     channels: dict[int, Any] = {}
     cut = ""
@@ -97,27 +105,36 @@ def _read_topics(file: str) -> tuple[list[Topic], list[str], str]:
                 break
             if isinstance(record, records.Schema):
                 schemas[record.id] = record
-            elif isinstance(record, records.Channel):
+                continue
+            if isinstance(record, records.Channel):
                 channels[record.id] = record
-            elif isinstance(record, records.Message) and record.channel_id in channels:
-                channel = channels[record.channel_id]
+                continue
+            if not isinstance(record, records.Message) or record.channel_id not in channels:
+                continue
+            channel_id = record.channel_id
+            try:
+                if channel_id not in decoders:
+                    channel = channels[channel_id]
+                    decoders[channel_id] = _decoder(file, channel, schemas.get(channel.schema_id))
+                decode = decoders[channel_id]
+                if decode is None:
+                    continue
+                values, frame = decode(record.data)
+            except (_core.Error, MemoryError):
+                raise
+            except Exception:  # of damage, anything
+                channel = channels[channel_id]
+                skipped[f"{channel.topic} ({channel.message_encoding})"] = None
+                decoders[channel_id] = None
+                continue
+            topic = topics.get(channel_id)
+            if topic is None:
+                channel = channels[channel_id]
                 schema = schemas.get(channel.schema_id)
-                name = f"{channel.topic} ({channel.message_encoding})"
-                if name in skipped:
-                    continue
-                try:
-                    if channel.id not in decoders:
-                        decoders[channel.id] = _decoder(file, channel, schema)
-                    values, frame = decoders[channel.id](record.data)
-                except (_core.Error, MemoryError):
-                    raise
-                except Exception:  # of damage, anything
-                    skipped[name] = None
-                    continue
                 kind = schema.name if schema is not None else ""
-                topic = topics.setdefault(channel.id, Topic(channel.topic, kind))
-                topic.frame = topic.frame or frame
-                topic.add(record.log_time, values, budget)
+                topic = topics[channel_id] = Topic(channel.topic, kind)
+            topic.frame = topic.frame or frame
+            topic.add(record.log_time, values, budget)
     if cut and not any(topic.times for topic in topics.values()):
         raise _core.Error(f"{file}: the MCAP file is damaged or cut off: {cut}")
     return list(topics.values()), list(skipped), cut
@@ -138,7 +155,8 @@ def _records(file: str, opened: Any, budget: Budget) -> Iterator[Any]:  # noqa: 
 def _decoder(file: str, channel: Any, schema: Any) -> Any:  # noqa: ANN401
     """Bytes to numbers by field and the frame's name."""
     if channel.message_encoding == "json":
-        return lambda data: _flatten(json.loads(data))
+        decode_json = json.JSONDecoder().decode
+        return lambda data: _flatten(decode_json(str(data, "utf-8-sig")))
     if channel.message_encoding == "cdr" and schema is not None and schema.encoding == "ros2msg":
         ros2 = load("mcap_ros2.decoder", file, "MCAP of ROS 2")
         decode = ros2.DecoderFactory().decoder_for("cdr", schema)
@@ -166,8 +184,13 @@ def _walk(value: Any, name: str, found: dict[str, float], frames: list[str], dep
         if name.endswith("frame_id"):
             frames.append(value)
     elif isinstance(value, Mapping):
+        before = f"{name}." if name else ""
+        has_room = depth < DEEPEST and len(found) + len(value) <= MOST_FIELDS
         for key, part in value.items():
-            _walk(part, f"{name}.{key}" if name else str(key), found, frames, depth + 1)
+            if has_room and type(part) is float:  # nearly always, and without a call
+                found[f"{before}{key}"] = part
+            else:
+                _walk(part, f"{before}{key}", found, frames, depth + 1)
     elif isinstance(value, list | tuple | np.ndarray):
         if len(value) <= LONGEST:
             for index, part in enumerate(value):

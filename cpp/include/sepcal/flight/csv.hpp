@@ -79,7 +79,8 @@ class CsvReader {
   std::optional<double> number(std::size_t column) const;
 
   /// The row, or before the first next() the header, as a line of plain comma-separated text: as it
-  /// stands in the file where it is such. Valid until the next call.
+  /// stands in the file where it is such. Stamps of time are as the file has them, name and cells.
+  /// Valid until the next call.
   std::string_view text();
 
   /// Line number of the row, counted from 1; before the first next() the header's.

@@ -204,10 +204,12 @@ std::unique_ptr<const Probe> magnetometer_probe(
     const std::optional<std::array<double, 3>>& field,
     const std::optional<Mounting>& mounting = Mounting{});
 
-/// The field's strength [uT] alone, and the sensor's noise [uT] where it is known already. A fit
-/// begins with the ellipsoid of the readings. Throws Error where the strength is not positive or
-/// the noise is negative.
-std::unique_ptr<const Probe> attitude_independent_probe(double field_strength, double noise = 0.0);
+/// The field's strength [uT] alone, or nothing where the flight of a fit is to show it (settle()):
+/// then it is the mean radius of the readings' ellipsoid, in their own unit or counts. And the
+/// sensor's noise [uT] where it is known already. A fit begins with the ellipsoid of the readings.
+/// Throws Error where the strength is not positive or the noise is negative.
+std::unique_ptr<const Probe> attitude_independent_probe(std::optional<double> field_strength,
+                                                        double noise = 0.0);
 
 /// A probe that ships: its name, and what people call it, "five-hole probe".
 struct ShippedName {

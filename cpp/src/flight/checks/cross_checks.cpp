@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "base/escaping.hpp"
 #include "flight/checks/axes.hpp"
@@ -103,6 +104,19 @@ double find_ratio_in_wind(const std::vector<double>& north, const std::vector<do
   return std::sqrt(columns.topRows(rows).col(3).mean() / square);
 }
 
+/// The column of speeds over the ground that the velocity is made of, where it is made of one.
+std::optional<files::LoggedQuantity> find_speed_column(const Log& log,
+                                                       const std::vector<double>& ground) {
+  constexpr double rounding = 1e-9;
+  auto speed = files::find_quantity(log.flight(), "gs", UnitKind::speed);
+  if (!speed) return std::nullopt;
+  for (std::size_t row = 0; row < ground.size(); ++row) {
+    const double apart = std::abs(ground[row] - std::abs(speed->at(row)));
+    if (apart > rounding * ground[row]) return std::nullopt;
+  }
+  return speed;
+}
+
 bool is_likely(double ratio) { return ratio >= least_ratio && ratio <= largest_ratio; }
 
 void note_speeds(const Log& log, std::vector<LogNote>& notes) {
@@ -123,7 +137,8 @@ void note_speeds(const Log& log, std::vector<LogNote>& notes) {
   const LoggedColumn* north = log.find("vn");
   const double held = std::isnan(in_wind) ? ratio : in_wind;
   const Unit* reads = read == nullptr ? nullptr : guess_unit(*read->logged.unit, held);
-  const Unit* moves = guess_unit(*north->logged.unit, 1 / held);
+  const auto speed = find_speed_column(log, ground);
+  const Unit* moves = guess_unit(speed ? *speed->unit : *north->logged.unit, 1 / held);
   std::vector<std::string> columns = airspeed->headers;
   columns.push_back(north->header());
   columns.push_back(log.find("ve")->header());
@@ -135,13 +150,17 @@ void note_speeds(const Log& log, std::vector<LogNote>& notes) {
   note.predicts = Predicted::scale;
   std::vector<std::string> renamings;
   std::vector<std::string> slips;
-  for (const auto& [column, unit] : {std::pair(read, reads), std::pair(north, moves)}) {
-    if (unit == nullptr) continue;
-    slips.push_back(fmt::format("{} under the header {}", unit->suffix, column->header()));
-    renamings.push_back(fmt::format(
-        "{} reads it so", column == north
-                              ? map_in_unit({north, log.find("ve"), log.find("vd")}, *unit)
-                              : map_in_unit({column}, *unit)));
+  const auto offer = [&](const Unit& unit, const std::string& header, const std::string& mapping) {
+    slips.push_back(fmt::format("{} under the header {}", unit.suffix, header));
+    renamings.push_back(fmt::format("{} reads it so", mapping));
+  };
+  if (reads != nullptr) offer(*reads, read->header(), map_in_unit({read}, *reads));
+  if (moves != nullptr && speed) {
+    const std::string& logged = speed->column->logged_header();
+    offer(*moves, speed->column->header,
+          "--map " + files::map_pair(fmt::format("gs_{}", moves->suffix), logged));
+  } else if (moves != nullptr) {
+    offer(*moves, north->header(), map_in_unit({north, log.find("ve"), log.find("vd")}, *moves));
   }
   if (slips.empty()) {
     note.advice = "check the units of both; a wind alone would have to be strong";
@@ -275,7 +294,8 @@ void note_implausible(const Log& log, const Settings& settings, std::vector<LogN
     return reading;
   };
   const auto set = settings.find("field_strength");
-  const auto strength = set == settings.end() ? std::nullopt : std::optional(set->second.front());
+  const bool is_given = set != settings.end() && !set->second.empty();  // else to be found
+  const auto strength = is_given ? std::optional(set->second.front()) : std::nullopt;
   for (const probes::Implausible& found : probes::find_implausible(find, strength)) {
     const bool said = std::ranges::any_of(notes, [&](const LogNote& note) {
       return note.kind == "units" && std::ranges::any_of(found.headers, [&](const auto& header) {

@@ -141,7 +141,9 @@ std::optional<FieldRows> find_field(const Log& log, const Settings& settings) {
   if (known) found.strength = median(std::move(strengths));
   const auto set = settings.find("field_strength");
   if (set != settings.end()) {
-    found.strength = set->second.front();
+    const bool is_given =
+        !set->second.empty();  // else to be found in a flight of readings all round
+    found.strength = is_given ? set->second.front() : not_a_number;
     found.truth.resize(3, 0);
   }
   for (const LoggedColumn* column : read) found.headers.push_back(column->header());

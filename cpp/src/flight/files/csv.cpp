@@ -82,7 +82,11 @@ void CsvReader::read_header() {
                     "SHIFT_JIS -t UTF-8 {0}, where it is Japanese, or -f GB18030 where Chinese",
                     base::file_in_shell(file_)));
   }
-  if (plain_text_.empty()) plain_text_ = files::join_cells(header_);
+  if (plain_text_.empty()) {
+    std::vector<std::string> written;
+    for (const files::ColumnForm& column : form_->columns) written.push_back(column.written);
+    plain_text_ = files::join_cells(written);
+  }
   line_text_ = plain_text_;
 }
 
@@ -175,8 +179,10 @@ std::string_view CsvReader::text() {
   if (cells_.empty() || (form_->is_plain() && wrong_length_.empty())) return line_text_;
   std::vector<std::string> cells;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const auto value = number(i);
-    cells.push_back(value ? "" : files::to_utf8(cells_[i]));
+    const bool is_stamp = form_->columns[i].kind != files::CellKind::number;
+    const auto value = is_stamp ? std::nullopt : number(i);
+    const bool is_text = form_->columns[i].missing.empty();  // else a flag that stands for none
+    cells.push_back(value || !is_text ? "" : files::to_utf8(cells_[i]));
     if (value) files::append_number(cells.back(), *value);
   }
   plain_text_ = files::join_cells(cells);

@@ -112,6 +112,16 @@ const std::string* find_without_unit(std::string_view quantity,
   return found == candidates.end() ? nullptr : &*found;
 }
 
+/// "; 'tow' is a time of week: ..." where time is missing and such a column says no unit.
+Message ask_for_time_of_week(std::span<const std::string> others) {
+  const auto found = std::ranges::find_if(others, [](const std::string& header) {
+    return rank_name("gps_tow", split_words(header)).has_value();
+  });
+  if (found == others.end()) return {};
+  return {fmt::format("; '{}' is a time of week without its unit: ", *found), Option{"map"},
+          fmt::format(" {} reads it in s; known too: ms", map_pair("gps_tow_s", *found))};
+}
+
 }  // namespace
 
 const Unit* unit_in(std::string_view header, std::string_view quantity, UnitKind kind,
@@ -215,6 +225,7 @@ Message ask_for_near_miss(std::string_view quantity, UnitKind kind,
             fmt::format(" {} reads it in {}{}", map_pair(accepted, *header), units.front().suffix,
                         rest.empty() ? "" : fmt::format("; known too: {}", fmt::join(rest, ", ")))};
   }
+  if (quantity == "time") return ask_for_time_of_week(others);
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <span>
 
 #include "sepcal/flight/csv.hpp"
 
@@ -13,21 +14,28 @@ namespace {
 constexpr std::array<std::string_view, 2> minuses{"\xE2\x88\x92",
                                                   "\xE2\x80\x93"};  // U+2212, U+2013
 constexpr std::array<std::string_view, 3> wide_blanks{"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
+constexpr std::array<std::string_view, 2> apostrophes{"\xE2\x80\x99", "\x92"};  // Windows-1252's
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// With "-" for a minus sign and " " for every blank.
+/// With "-" for a minus sign, " " for every blank and "'" for the Swiss mark of thousands.
 std::string in_ascii(std::string_view cell) {
   std::string text;
+  const auto take_one_of = [&](std::span<const std::string_view> signs, char letter) {
+    const auto sign =
+        std::ranges::find_if(signs, [&](std::string_view each) { return cell.starts_with(each); });
+    if (sign == signs.end()) return false;
+    text += letter;
+    cell.remove_prefix(sign->size());
+    return true;
+  };
   while (!cell.empty()) {
-    const auto blank = std::ranges::find_if(
-        wide_blanks, [&](std::string_view wide) { return cell.starts_with(wide); });
-    const auto minus = std::ranges::find_if(
-        minuses, [&](std::string_view sign) { return cell.starts_with(sign); });
-    const bool is_blank = blank != wide_blanks.end();
-    const bool is_minus = minus != minuses.end();
-    text += is_blank ? ' ' : is_minus ? '-' : cell.front();
-    cell.remove_prefix(is_blank ? blank->size() : is_minus ? minus->size() : 1);
+    if (take_one_of(wide_blanks, ' ') || take_one_of(minuses, '-') ||
+        take_one_of(apostrophes, '\'')) {
+      continue;
+    }
+    text += cell.front();
+    cell.remove_prefix(1);
   }
   return text;
 }
@@ -138,8 +146,9 @@ NumberLook look_at_number(std::string_view cell) {
 std::optional<double> parse_number_as(std::string_view cell, const NumberMarks& marks) {
   if (marks.is_plain()) {
     const auto number = parse_number(cell);
-    const bool is_odd = cell.find('\xE2') != std::string_view::npos ||
-                        cell.find_first_of("dD") != std::string_view::npos;
+    const bool is_odd = cell.find_first_of(
+                            "\xE2\x92"
+                            "dD") != std::string_view::npos;
     if (number || !is_odd) return number;
   }
   if (const auto number = parse_short(cell, marks.decimal)) return number;

@@ -11,6 +11,7 @@
 #include <map>
 #include <tuple>
 
+#include "flight/files/icartt.hpp"
 #include "flight/files/number_text.hpp"
 #include "flight/files/row_cells.hpp"
 #include "flight/files/table_head.hpp"
@@ -279,36 +280,29 @@ class Recogniser {
   }
 
   TableForm recognise() {
+    icartt_ = read_icartt(all_);
     choose_layout();
     find_numbers();
-    read_head();
+    if (icartt_) {
+      take_icartt_head(*icartt_);
+    } else {
+      read_head();
+    }
     name_columns();
     find_suffixes();
     note_marks();
-    find_time(form_, rows_, shown_, asked_.mapped);
+    find_time(file_, form_, rows_, shown_, asked_.mapped);
     number_decimals();
     return std::move(form_);
   }
 
  private:
   void choose_layout() {
-    std::string asked = asked_.delimiter;
-    if (!all_.empty() && asked.empty()) {
-      asked = find_sep(all_.front());
-      if (!asked.empty()) all_.front() = {};  // it is read
+    if (icartt_) {
+      lay_out_icartt(*icartt_);
+    } else {
+      find_layout();
     }
-    const Delimiter* const only = find_delimiter(asked);
-    for (std::size_t most = most_lines; layout_.cells == 0 && lines_.size() < all_.size();
-         most *= 10) {
-      lines_ = std::span(all_).first(std::min(most, all_.size()));
-      layout_ = {};
-      for (const Delimiter& by : delimiters) {
-        if (only != nullptr && only != &by) continue;
-        Layout tried = lay_out(lines_, by, texts_);
-        if (layout_.by == nullptr || tried.is_better_than(layout_)) layout_ = std::move(tried);
-      }
-    }
-    if (layout_.cells == 0) lay_out_text(only);
     form_.delimiter = layout_.by->mark;
     form_.first_row = layout_.first_row + 1;
     for (std::size_t i = layout_.first_row; i < lines_.size(); ++i) {
@@ -326,6 +320,49 @@ class Recogniser {
     if (form_.delimiter != ',' && layout_.cells > 1) {
       note(fmt::format("{} part the columns", layout_.by->name));
     }
+  }
+
+  void lay_out_icartt(const IcarttHead& head) {
+    lines_ = std::span(all_).first(std::min(head.lines + most_lines, all_.size()));
+    layout_.by = &delimiters.front();
+    layout_.first_row = head.lines;
+    layout_.cells = head.columns.size();
+    layout_.lines.resize(head.lines);
+    for (const std::string_view line : lines_.subspan(head.lines)) {
+      layout_.lines.push_back(cut(line, layout_.by->mark, texts_));
+    }
+  }
+
+  void take_icartt_head(const IcarttHead& head) {
+    form_.header_line = head.lines;
+    for (const IcarttColumn& column : head.columns) {
+      names_.push_back(column.name);
+      units_.push_back(column.unit);
+    }
+    note(
+        fmt::format("ICARTT: the {} lines of the head give names and units, and which numbers are "
+                    "missing ones",
+                    head.lines));
+  }
+
+  void find_layout() {
+    std::string asked = asked_.delimiter;
+    if (!all_.empty() && asked.empty()) {
+      asked = find_sep(all_.front());
+      if (!asked.empty()) all_.front() = {};  // it is read
+    }
+    const Delimiter* const only = find_delimiter(asked);
+    for (std::size_t most = most_lines; layout_.cells == 0 && lines_.size() < all_.size();
+         most *= 10) {
+      lines_ = std::span(all_).first(std::min(most, all_.size()));
+      layout_ = {};
+      for (const Delimiter& by : delimiters) {
+        if (only != nullptr && only != &by) continue;
+        Layout tried = lay_out(lines_, by, texts_);
+        if (layout_.by == nullptr || tried.is_better_than(layout_)) layout_ = std::move(tried);
+      }
+    }
+    if (layout_.cells == 0) lay_out_text(only);
   }
 
   /// A table without a row that has numbers: its first line names the columns.
@@ -373,7 +410,8 @@ class Recogniser {
           column.may_group = column.may_group && parse_number_as(number, {',', "."}).has_value();
         }
         if (look.either) column.either = cell;
-        column.whole = column.whole || number.find_first_of(".,' eE") == std::string_view::npos;
+        column.whole = column.whole || (look.groups.empty() &&
+                                        number.find_first_of(".,eE") == std::string_view::npos);
         for (const char mark : look.groups) {
           if (column.groups.find(mark) == std::string::npos) column.groups += mark;
         }
@@ -548,10 +586,21 @@ class Recogniser {
         logged = fmt::format("column_{}", cell + 1);
         if (form_.header_line > 0) note(fmt::format("a column without a name is {}", logged));
       }
-      form_.columns.push_back({.header = with_unit(logged, units_[cell]),
+      if (contradicts_unit(logged, units_[cell])) {
+        note(
+            fmt::format("the header {} and the line of units, {}, say different units: the header "
+                        "holds",
+                        logged, units_[cell]));
+      }
+      const std::string header = with_unit(logged, units_[cell]);
+      form_.columns.push_back({.header = header,
                                .logged = logged,
+                               .written = header,
                                .cell = cell,
                                .marks = marks_[cell]});
+      if (!icartt_) continue;
+      form_.columns.back().scale = icartt_->columns[cell].scale;
+      form_.columns.back().missing = icartt_->columns[cell].missing;
     }
     number_doubles();
   }
@@ -584,6 +633,7 @@ class Recogniser {
       do {
         column.header = fmt::format("{}.{}", header, ++given[header]);
       } while (count.contains(column.header));
+      column.written = column.header;
       if (given[header] == 1) {
         note(fmt::format("column '{}' is there {}: the first is {}", header,
                          count[header] == 2 ? "twice" : fmt::format("{} times", count[header]),
@@ -596,7 +646,7 @@ class Recogniser {
     std::vector<std::string> with;
     for (ColumnForm& column : form_.columns) {
       if (column.header == "maneuver") continue;  // labels
-      std::string suffix;
+      std::map<std::string, std::size_t> suffixes;
       std::size_t such = 0;
       std::size_t filled = 0;
       for (const auto& row : shown_) {
@@ -605,17 +655,37 @@ class Recogniser {
         ++filled;
         const std::size_t at = find_suffix(cell);
         if (at == std::string_view::npos) continue;
-        if (suffix.empty()) suffix = cell.substr(at);
-        such += cell.substr(at) == suffix ? 1U : 0U;
+        ++suffixes[std::string(cell.substr(at))];
+        ++such;
       }
       if (such == 0 || 10 * such < 9 * filled) continue;
-      column.suffix = suffix;
-      column.header = with_unit(column.header, to_utf8(suffix));
+      column.suffix = std::ranges::max_element(suffixes, {}, [](const auto& suffix) {
+                        return suffix.second;
+                      })->first;
+      column.header = with_unit(column.header, to_utf8(column.suffix));
+      column.written = column.header;
       with.push_back(column.logged);
+      if (suffixes.size() > 1) note_other_suffixes(column, suffixes);
     }
     if (!with.empty()) {
       note(fmt::format("the cells of {} name their unit", fmt::join(with, ", ")));
     }
+  }
+
+  void note_other_suffixes(const ColumnForm& column,
+                           const std::map<std::string, std::size_t>& suffixes) {
+    constexpr std::size_t most = 3;
+    const auto unit_of = [](std::string_view suffix) {
+      return to_utf8(suffix.substr(suffix.find_first_not_of(' ')));
+    };
+    std::vector<std::string> others;
+    for (const auto& [suffix, cells] : suffixes) {
+      if (suffix != column.suffix && others.size() < most) others.push_back(unit_of(suffix));
+    }
+    note(
+        fmt::format("cells of {0} are in {1} and others in {2}: those in {1} alone are read; "
+                    "convert the rest",
+                    column.logged, unit_of(column.suffix), fmt::join(others, ", ")));
   }
 
   void number_decimals() {
@@ -637,6 +707,7 @@ class Recogniser {
   std::vector<std::string_view> all_;
   std::span<const std::string_view> lines_;  // of all, those that are looked at closely
   std::deque<std::string> texts_;            // keeps what views point to
+  std::optional<IcarttHead> icartt_;         // where it is such a file
   Layout layout_;
   SampledRows rows_;                      // of these lines
   SampledRows shown_;                     // the same and some of later lines
@@ -666,7 +737,8 @@ bool is_whole(const TableForm& form, std::span<const std::string_view> cells) {
 bool TableForm::is_plain() const {
   if (delimiter != ',' || is_odd || columns.size() != cells) return false;
   return std::ranges::all_of(columns, [](const ColumnForm& column) {
-    return column.kind == CellKind::number && column.suffix.empty() && column.marks.is_plain();
+    return column.kind == CellKind::number && column.suffix.empty() && column.marks.is_plain() &&
+           column.missing.empty() && column.scale == 1.0;
   });
 }
 
@@ -711,7 +783,11 @@ std::optional<double> read_number(const ColumnForm& column,
     cell.remove_suffix(column.suffix.size());
     while (cell.ends_with(' ')) cell.remove_suffix(1);
   }
-  return parse_number_as(cell, column.marks);
+  const auto number = parse_number_as(cell, column.marks);
+  if (!number || std::ranges::find(column.missing, *number) != column.missing.end()) {
+    return std::nullopt;
+  }
+  return *number * column.scale;
 }
 
 }  // namespace sepcal::files

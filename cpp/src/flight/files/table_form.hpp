@@ -29,16 +29,18 @@ enum class CellKind {
 struct ColumnForm {
   std::string header;    // unique and not empty
   std::string logged;    // the header as the file has it
+  std::string written;   // where the table is written anew: that, with the unit of its own line
   std::size_t cell = 0;  // which of a row's
   NumberMarks marks = {};
   CellKind kind = CellKind::number;
   std::string suffix = {};    // a unit that stands in each cell behind the number
   std::size_t date_cell = 0;  // of `dated`
   DateOrder order = DateOrder::year_first;
-  double first_day = 0.0;  // of dates; days since 1970-01-01
-  bool is_of_day = false;  // time since midnight, which starts anew at the next
-  double scale = 1.0;      // of `counted`: [s]
-  double origin = 0.0;     // of `counted`: a count
+  double first_day = 0.0;            // of dates; days since 1970-01-01
+  bool is_of_day = false;            // time since midnight, which starts anew at the next
+  double scale = 1.0;                // that a number is multiplied by; of `counted`: [s]
+  double origin = 0.0;               // of `counted`: a count
+  std::vector<double> missing = {};  // numbers that stand for none
 };
 
 struct TableForm {

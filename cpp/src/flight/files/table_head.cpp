@@ -32,6 +32,11 @@ constexpr std::array unit_words{
     "w",
 };
 
+using enum UnitKind;
+constexpr std::array kinds_of_units{
+    time,  angle,    rate,  angular_acceleration, length, speed, acceleration, mass,
+    force, pressure, field, temperature,          density};
+
 std::string in_lower_case(std::string_view text) {
   std::string lower(text);
   std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -109,6 +114,17 @@ double score_units(const HeadLine& line) {
   return filled > 0.0 ? static_cast<double>(units) / filled : 0.0;
 }
 
+/// The unit that a name ends with: "kt" of "ias_kt" and of "IAS [kt]"; empty where it has none.
+std::string_view unit_behind(std::string_view name) {
+  if (name.ends_with(')') || name.ends_with(']')) {
+    const std::size_t open = name.find_last_of("([");
+    return open == std::string_view::npos ? std::string_view() : name.substr(open);
+  }
+  const std::size_t suffix = name.rfind('_');
+  if (suffix == std::string_view::npos || !is_unit_like(name.substr(suffix + 1))) return {};
+  return name.substr(suffix + 1);
+}
+
 }  // namespace
 
 bool names_quantities(const std::vector<std::string>& cells) {
@@ -161,13 +177,28 @@ TableHead choose_head(const std::vector<HeadLine>& lines) {
 
 std::string with_unit(const std::string& name, std::string_view unit) {
   unit = without_brackets(unit);
-  if (says_nothing(unit) || name.empty()) return name;
-  if (name.ends_with(')') || name.ends_with(']')) return name;
-  const std::size_t suffix = name.rfind('_');
-  if (suffix != std::string::npos && is_unit_like(std::string_view(name).substr(suffix + 1))) {
-    return name;
-  }
+  if (says_nothing(unit) || name.empty() || !unit_behind(name).empty()) return name;
   return fmt::format("{} ({})", name, unit);
+}
+
+bool contradicts_unit(std::string_view name, std::string_view unit) {
+  const auto spelled = [](std::string_view text) {
+    const std::vector<std::string> words = split_words(without_brackets(text));
+    std::vector<std::pair<UnitKind, std::string_view>> units;
+    for (const UnitKind kind : kinds_of_units) {
+      for (const Unit& each : known_units(kind)) {
+        if (spell_unit(words, each)) units.emplace_back(kind, each.suffix);
+      }
+    }
+    return units;
+  };
+  const std::string_view own = unit_behind(name);
+  if (own.size() == 1 && own != "m" && own != "s") return false;  // "wind_n" is no force
+  const auto of_name = spelled(own);
+  const auto of_line = spelled(unit);
+  if (of_name.empty() || of_line.empty()) return false;
+  return std::ranges::none_of(
+      of_name, [&](const auto& each) { return std::ranges::find(of_line, each) != of_line.end(); });
 }
 
 }  // namespace sepcal::files

@@ -30,7 +30,10 @@ TableHead choose_head(const std::vector<HeadLine>& lines);
 /// Whether one of them is what a quantity is called, by sepcal or by others.
 bool names_quantities(const std::vector<std::string>& cells);
 
-/// "vn (m/s)"; the name alone where the unit says nothing or the name says one itself.
+/// "vn (m/s)"; the name alone where the unit says nothing or the name says one itself, "vn_mps".
 std::string with_unit(const std::string& name, std::string_view unit);
+
+/// Whether the name ends with a unit, and with another one than `unit` is.
+bool contradicts_unit(std::string_view name, std::string_view unit);
 
 }  // namespace sepcal::files

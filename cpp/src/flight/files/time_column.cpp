@@ -14,6 +14,7 @@
 #include "flight/files/known_names.hpp"
 #include "flight/files/number_text.hpp"
 #include "flight/files/units.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::files {
 namespace {
@@ -22,16 +23,17 @@ constexpr double day = 86400.0;
 constexpr const char* time_header = "time_s";
 
 bool is_time_word(const std::string& word) {
-  constexpr std::array words{"time",  "timestamp", "t",     "utc",     "datetime",  "clock",
-                             "epoch", "date",      "ts",    "stamp",   "datenum",   "elapsed",
-                             "zeit",  "uhrzeit",   "temps", "heure",   "hora",      "tiempo",
-                             "tid",   "tijd",      "tempo", "horaire", "juliandate"};
+  constexpr std::array words{"time",  "timestamp", "t",     "utc",     "datetime",   "clock",
+                             "epoch", "date",      "ts",    "stamp",   "datenum",    "elapsed",
+                             "zeit",  "uhrzeit",   "temps", "heure",   "hora",       "tiempo",
+                             "tid",   "tijd",      "tempo", "horaire", "juliandate", "hhmmss"};
   return std::ranges::find(words, word) != words.end();
 }
 
-/// Whose clock it is.
+/// Whose clock it is, or of what.
 bool is_owner_of_time(const std::string& word) {
-  constexpr std::array words{"gps", "sys", "system", "session", "log", "lcl", "local"};
+  constexpr std::array words{"gps", "sys",   "system", "session", "log",
+                             "lcl", "local", "start",  "mid"};
   return std::ranges::find(words, word) != words.end();
 }
 
@@ -284,6 +286,12 @@ bool take_seconds(TableForm& form, const SampledRows& rows, ColumnForm& column) 
   return true;
 }
 
+/// Whether the header says how its numbers are written.
+bool is_called_packed(const ColumnForm& column) {
+  const std::vector<std::string> words = split_words(column.logged);
+  return std::ranges::find(words, "hhmmss") != words.end();
+}
+
 /// "105630.5" is 10:56:30.5 where no seconds or minutes from 60 to 99 turn up, and a minute ends.
 bool take_packed_clock(TableForm& form, const SampledRows& shown, ColumnForm& column) {
   constexpr std::size_t fewest = 12;
@@ -296,9 +304,10 @@ bool take_packed_clock(TableForm& form, const SampledRows& shown, ColumnForm& co
   const auto ends_minute = [](double before, double after) {
     return std::floor(before / 100.0) != std::floor(after / 100.0);
   };
-  if (numbers.size() < fewest || numbers.back() == numbers.front() ||
-      !std::ranges::all_of(numbers, is_clock) ||
-      std::ranges::adjacent_find(numbers, ends_minute) == numbers.end()) {
+  const bool shows_itself = numbers.size() >= fewest && numbers.back() != numbers.front() &&
+                            std::ranges::adjacent_find(numbers, ends_minute) != numbers.end();
+  if (numbers.empty() || !std::ranges::all_of(numbers, is_clock) ||
+      !(shows_itself || is_called_packed(column))) {
     return false;
   }
   column.is_of_day = true;
@@ -322,6 +331,19 @@ bool take_count(TableForm& form, const SampledRows& rows, ColumnForm& column) {
   return true;
 }
 
+/// "1.714781E+09" row after row: a count since an epoch whose last digits were never written, so
+/// that hardly any row differs from the one before. The first such cell; empty where it is none.
+std::string_view find_lost_digits(const SampledRows& rows, const ColumnForm& column) {
+  constexpr std::size_t fewest = 5;
+  const auto cells = cells_of(rows, column.cell);
+  const auto numbers = numbers_of(rows, column);
+  const bool with_exponent = std::ranges::all_of(cells, [](std::string_view cell) {
+    return cell.find_first_of("eE") != std::string_view::npos;
+  });
+  if (!with_exponent || cells.size() < fewest || numbers.size() != cells.size()) return {};
+  return repeats(cells) && find_epoch(numbers.front(), 1.0) ? cells.front() : std::string_view();
+}
+
 }  // namespace
 
 bool is_time_text(std::string_view cell) {
@@ -332,8 +354,8 @@ bool is_time_text(std::string_view cell) {
          parse_date(cell, order) || parse_date(cell, american);
 }
 
-void find_time(TableForm& form, const SampledRows& rows, const SampledRows& shown,
-               const std::vector<std::string>& mapped) {
+void find_time(const std::string& file, TableForm& form, const SampledRows& rows,
+               const SampledRows& shown, const std::vector<std::string>& mapped) {
   const auto is_stamp = [](std::string_view cell) -> bool {
     return parse_date_time(cell, DateOrder::day_first) ||
            parse_date_time(cell, DateOrder::month_first);
@@ -350,7 +372,16 @@ void find_time(TableForm& form, const SampledRows& rows, const SampledRows& show
     return unit_in(column.header, "time", UnitKind::time) != nullptr && is_of_numbers(column);
   };
   const auto exact = std::ranges::find_if(form.columns, is_exact);
+  const auto refuse_lost_digits = [&](const ColumnForm& column) {
+    const std::string_view cell = find_lost_digits(rows, column);
+    if (cell.empty()) return;
+    throw Error(
+        fmt::format("{}: '{}' has lost the digits that tell its rows apart: row after row is '{}'; "
+                    "have it written with all digits, as 1714781000.25",
+                    file, column.logged, cell));
+  };
   if (exact != form.columns.end()) {
+    refuse_lost_digits(*exact);
     if (exact->header == time_header && !is_mapped(*exact)) take_packed_clock(form, shown, *exact);
     return;
   }
@@ -392,6 +423,9 @@ void find_time(TableForm& form, const SampledRows& rows, const SampledRows& show
         take_seconds(form, rows, column)) {
       return;
     }
+  }
+  for (const ColumnForm& column : form.columns) {
+    if (is_called_time(column)) refuse_lost_digits(column);
   }
 }
 

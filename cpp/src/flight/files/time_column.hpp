@@ -19,8 +19,8 @@ bool is_time_text(std::string_view cell);
 /// date where that is known, a count of seconds to nanoseconds, or of days, since an epoch; seconds
 /// whose fractions show that they are such. Nothing where the table has such a column already, or
 /// none. Numbers in a column of `mapped` stay as they are. `shown`: rows from farther down as well.
-void find_time(TableForm& form, const SampledRows& rows, const SampledRows& shown,
-               const std::vector<std::string>& mapped);
+void find_time(const std::string& file, TableForm& form, const SampledRows& rows,
+               const SampledRows& shown, const std::vector<std::string>& mapped);
 
 /// Times of day that go on rising across midnight, over all rows.
 class RisingClock {

@@ -78,8 +78,30 @@ std::optional<double> take_fraction_of_second(std::string_view& text) {
   return milliseconds ? std::optional(milli * *milliseconds) : std::nullopt;
 }
 
+/// Whether it begins as "10.14.30.0": two digits thrice and a fraction, which no date has.
+bool has_clock_of_points(std::string_view text) {
+  constexpr std::string_view form = "00.00.00.0";
+  return text.size() >= form.size() &&
+         std::ranges::equal(text.substr(0, form.size()), form, [](unsigned char c, char shape) {
+           return shape == '.' ? c == '.' : std::isdigit(c) != 0;
+         });
+}
+
 /// Takes a time of day; the rest is left.
 std::optional<double> take_clock(std::string_view& text) {
+  if (has_clock_of_points(text)) {
+    const auto take_part = [&] {
+      const int part = take_digits(text, 2).value_or(0);
+      take(text, ".");
+      return part;
+    };
+    const int hours = take_part();
+    const int minutes = take_part();
+    const int seconds = take_digits(text, 2).value_or(0);  // the fraction follows
+    const auto fraction = take_fraction(text);
+    if (!fraction || hours >= 24 || minutes >= 60 || seconds > 60) return std::nullopt;
+    return hours * hour + minutes * minute + seconds + *fraction;
+  }
   const double days = take_day_of_year(text);
   const auto first = take_digits(text, 2);
   if (!first || !take(text, ":")) return std::nullopt;

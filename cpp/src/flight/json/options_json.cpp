@@ -4,6 +4,7 @@
 #include <concepts>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/thread_pool.hpp"
@@ -175,6 +176,9 @@ std::shared_ptr<const Probe> read_probe(const std::string& model, const Json& op
     const Json& value = options.at(name);
     settings[name] = value.is_array() ? value.get<std::vector<double>>()
                                       : std::vector<double>{value.get<double>()};
+    if (settings[name].empty() && std::string_view(name) == "field_strength") {
+      throw Error(describe(value) + " stands where the field's strength should");
+    }
   }
   return make_probe(model, settings);
 }

@@ -34,16 +34,40 @@ const Flight::Column* find_called(const Flight& flight,
 struct TimeOfWeek {
   const Flight::Column* column = nullptr;
   double second = 1.0;  // in the column's unit
+  bool is_guessed = false;
 };
+
+/// The unit that a time of week without one is in, by its size and its steps: nothing where both
+/// would do.
+std::optional<double> guess_second(const Flight::Column& column) {
+  constexpr double longest_step = 2.0;  // s from row to row
+  constexpr double milli = 1000.0;
+  double largest = 0.0;
+  double step = 0.0;
+  double before = not_a_number;
+  for (const double value : column.values) {
+    if (!std::isfinite(value)) continue;
+    largest = std::max(largest, value);
+    if (step == 0.0 && value > before) step = value - before;
+    before = value;
+  }
+  if (largest > week) return largest <= week * milli ? std::optional(milli) : std::nullopt;
+  return step > 0.0 && step <= longest_step ? std::optional(1.0) : std::nullopt;
+}
 
 std::optional<TimeOfWeek> find_time_of_week(const Flight& flight) {
   if (const auto logged = files::find_quantity(flight, "gps_tow", files::UnitKind::time)) {
     return TimeOfWeek{logged->column, 1.0 / logged->unit->convert(1.0)};
   }
   constexpr std::array<std::string_view, 2> milliseconds{"gms", "itow"};
-  const Flight::Column* column = find_called(flight, milliseconds);
-  if (column == nullptr) return std::nullopt;
-  return TimeOfWeek{column, 1000.0};
+  if (const Flight::Column* column = find_called(flight, milliseconds)) {
+    return TimeOfWeek{column, 1000.0};
+  }
+  constexpr std::array<std::string_view, 4> without_unit{"tow", "gpstow", "timeofweek",
+                                                         "gpstimeofweek"};
+  const Flight::Column* column = find_called(flight, without_unit);
+  const auto second = column == nullptr ? std::nullopt : guess_second(*column);
+  return second ? std::optional(TimeOfWeek{column, *second, true}) : std::nullopt;
 }
 
 }  // namespace
@@ -72,9 +96,12 @@ void derive_time(Flight& flight, std::vector<std::string>& notes) {
     time.push_back(week * weeks_on + seconds);
     if (!none && !std::isfinite(time.back())) none = Flight::Cell{row, "no GPS time"};
   }
-  notes.push_back(fmt::format("{}: time is {}{}, in seconds", flight.name(),
+  notes.push_back(fmt::format("{}: time is {}{}{}, in seconds", flight.name(),
                               tow->column->logged_header(),
-                              weeks == nullptr ? "" : " and " + weeks->logged_header()));
+                              weeks == nullptr ? "" : " and " + weeks->logged_header(),
+                              !tow->is_guessed     ? ""
+                              : tow->second == 1.0 ? ", taken for seconds"
+                                                   : ", taken for milliseconds"));
   const auto owned = std::make_shared<const std::vector<double>>(std::move(time));
   flight.view("time_s", *owned, owned, std::move(none));
 }

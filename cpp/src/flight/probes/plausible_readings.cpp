@@ -7,7 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "base/escaping.hpp"
 #include "flight/probes/ellipsoid.hpp"
@@ -71,6 +76,83 @@ std::string suggest_units(std::span<const Reading> readings, const Range& range,
                      units.size() > 1 ? fmt::format(" for {}", units.front()) : "");
 }
 
+/// A direction a row, as long as what shows it.
+struct Pointer {
+  std::vector<double> north;
+  std::vector<double> east;
+  double shortest = 0.0;  // that is looked at
+};
+
+/// Where the velocity points, or else the field that is read, about its mean for hard iron: the
+/// heading but for what is constant. Nothing where neither is in use.
+std::optional<Pointer> find_pointer(const FindReading& find) {
+  constexpr double slow = 3.0;  // m/s
+  auto north = find("vn");
+  auto east = find("ve");
+  if (north && east) return Pointer{std::move(north->values), std::move(east->values), slow};
+  north = find("mx");
+  east = find("my");  // against the turn
+  if (!north || !east) return std::nullopt;
+  const auto about_mean = [](std::vector<double>& values, double sign) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const double value : values) {
+      if (!std::isfinite(value)) continue;
+      sum += value;
+      ++count;
+    }
+    for (double& value : values) value = sign * (value - sum / count);
+  };
+  about_mean(north->values, 1.0);
+  about_mean(east->values, -1.0);
+  return Pointer{std::move(north->values), std::move(east->values)};
+}
+
+/// How nearly a yaw in this unit [rad] turns with it, from 0 to 1; 0 where there are few rows.
+double follow(const Pointer& pointer, std::span<const double> yaw, double unit) {
+  constexpr std::size_t fewest = 20;
+  std::complex<double> sum = 0.0;
+  std::size_t rows = 0;
+  for (std::size_t row = 0; row < yaw.size(); ++row) {
+    const double north = pointer.north[row];
+    const double east = pointer.east[row];
+    if (!(std::hypot(north, east) > pointer.shortest)) continue;
+    sum += std::polar(1.0, unit * yaw[row] - std::atan2(east, north));
+    ++rows;
+  }
+  return rows < fewest ? 0.0 : std::abs(sum) / static_cast<double>(rows);
+}
+
+/// How fast a yaw turns, as a multiple of the rate r; NaN where that is not in use.
+double compare_with_rate(std::span<const double> yaw, const FindReading& find) {
+  const auto time = find("time");
+  const auto rate = find("r");
+  if (!time || !rate) return std::nan("");
+  double both = 0.0;
+  double rate_alone = 0.0;
+  for (std::size_t row = 1; row < yaw.size(); ++row) {
+    const double turned = rate->values[row] * (time->values[row] - time->values[row - 1]);
+    both += turned * (yaw[row] - yaw[row - 1]);
+    rate_alone += turned * turned;
+  }
+  return both / rate_alone;
+}
+
+/// Whether a yaw beyond a turn is in radians all the same, and counts the turns: as such it turns
+/// with the course or the field, or as fast as r says, and as degrees it doesn't.
+bool is_unwrapped(const Reading& yaw, const FindReading& find) {
+  constexpr double of_degree = std::numbers::pi / 180.0;
+  constexpr double closely = 0.7;
+  constexpr double nearly = 3.0;
+  if (const auto pointer = find_pointer(find)) {
+    const double in_radians = follow(*pointer, yaw.values, 1.0);
+    const double in_degrees = follow(*pointer, yaw.values, of_degree);
+    if (std::max(in_radians, in_degrees) > closely) return in_radians > in_degrees;
+  }
+  const double turns = compare_with_rate(yaw.values, find);
+  return turns > 1.0 / nearly && turns < nearly;
+}
+
 void check_range(const QuantityRange& entry, const FindReading& find,
                  std::vector<Implausible>& found) {
   const auto reading = find(entry.quantity);
@@ -79,7 +161,7 @@ void check_range(const QuantityRange& entry, const FindReading& find,
   if (counts_turns) return;
   const auto outside = std::ranges::count_if(
       reading->values, [&](double value) { return !entry.range.contains(value); });
-  if (outside == 0) return;
+  if (outside == 0 || (entry.quantity == "yaw" && is_unwrapped(*reading, find))) return;
   const auto [smallest, largest] = std::ranges::minmax(reading->values);
   found.push_back(
       {{reading->header},

@@ -31,7 +31,8 @@ struct Implausible {
   std::string sentence;
 };
 
-/// One for each implausible quantity: angles beyond a turn (pitch: a quarter of one), an absolute
+/// One for each implausible quantity: angles beyond a turn (pitch: a quarter of one; no yaw that
+/// counts turns in radians, as the course, the field or r shows), an absolute
 /// temperature outside 150 to 400 K, a density outside 0.02 to 2 kg/m^3, a static pressure outside
 /// 5 to 120 kPa, a dynamic pressure outside 1 Pa to 50 kPa, flow-angle pressures out of proportion
 /// to it, a field outside 5 to 200 uT (read: 400 uT).

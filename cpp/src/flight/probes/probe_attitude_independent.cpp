@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/parameter_values.hpp"
 #include "flight/probes/attitude_independent_start.hpp"
 #include "flight/probes/corrected_columns.hpp"
+#include "flight/probes/ellipsoid.hpp"
+#include "flight/probes/joined_quantities.hpp"
 #include "flight/probes/plausible_scales.hpp"
 #include "flight/probes/probe_quantities.hpp"
 #include "flight/probes/restatements.hpp"
@@ -29,12 +33,15 @@ namespace {
 
 class StrengthOnlyMagnetometer final : public Probe {
  public:
-  StrengthOnlyMagnetometer(double field_strength, double noise)
-      : setup_{field_strength, noise}, model_(setup_) {
-    if (!std::isfinite(field_strength) || !(field_strength > 0)) {
+  StrengthOnlyMagnetometer(std::optional<double> field_strength, double noise,
+                           bool is_of_readings = false)
+      : setup_{field_strength.value_or(std::nan("")), noise},
+        model_(setup_),
+        is_of_readings_(is_of_readings) {
+    if (field_strength && (!std::isfinite(*field_strength) || !(*field_strength > 0))) {
       throw OptionError(
           {Option{"field_strength"},
-           fmt::format(" is {}; give the field's strength in uT, above zero", field_strength)});
+           fmt::format(" is {}; give the field's strength in uT, above zero", *field_strength)});
     }
     if (!std::isfinite(noise) || noise < 0) {
       throw Error(fmt::format("field_noise is {}; give a standard deviation in uT", noise));
@@ -49,11 +56,27 @@ class StrengthOnlyMagnetometer final : public Probe {
   }
 
   std::map<std::string, std::vector<double>> settings() const override {
-    return {{"field_strength", {setup_.field_strength}}, {"field_noise", {setup_.noise}}};
+    std::vector<double> strength;
+    if (is_known()) strength.push_back(setup_.field_strength);
+    return {{"field_strength", std::move(strength)}, {"field_noise", {setup_.noise}}};
+  }
+
+  std::unique_ptr<const Probe> settle(const Flight& flight, const LogChoice& log) const override {
+    if (is_known()) return nullptr;
+    const double radius = radius_of_readings(read_for(*this, flight, log).flight);
+    return std::make_unique<const StrengthOnlyMagnetometer>(radius, setup_.noise, true);
   }
 
   ProbeRecord prepare(const Flight& flight, const LogChoice& log) const override {
-    return prepare_attitude_independent(flight, setup_.field_strength, log);
+    ProbeRecord record = prepare_attitude_independent(flight, known(), log);
+    if (is_of_readings_) {
+      record.notes.push_back(fmt::format(
+          "{}: the field's strength is taken for the mean radius of the readings' ellipsoid, "
+          "{:.6g} in the log's own unit or counts: scale errors are against that, and the "
+          "calibrated field is in the same unit",
+          flight.name(), setup_.field_strength));
+    }
+    return record;
   }
 
   ProbeReadings read(const Flight& flight, const LogChoice& log) const override {
@@ -82,7 +105,8 @@ class StrengthOnlyMagnetometer final : public Probe {
   }
 
   std::unique_ptr<const Probe> with_noise(double standard_deviation) const override {
-    return attitude_independent_probe(setup_.field_strength, standard_deviation);
+    return std::make_unique<const StrengthOnlyMagnetometer>(known(), standard_deviation,
+                                                            is_of_readings_);
   }
 
   void judge(Fit& fit) const override {
@@ -100,9 +124,17 @@ class StrengthOnlyMagnetometer final : public Probe {
   }
 
  private:
+  bool is_known() const { return !std::isnan(setup_.field_strength); }
+
+  double known() const {
+    if (is_known()) return setup_.field_strength;
+    throw OptionError({Option{"field_strength"},
+                       " is to be found in the flight of a fit; give it as a number in uT here"});
+  }
+
   /// In the middle of the record's rows.
   double usual_strength(const Record& record) const {
-    if (!record.has("field_change")) return setup_.field_strength;
+    if (!record.has("field_change")) return known();
     const auto changes = record.column("field_change");
     std::vector<double> values(changes.begin(), changes.end());
     return setup_.field_strength + numerics::select_quantile(values, 0.5);
@@ -110,11 +142,13 @@ class StrengthOnlyMagnetometer final : public Probe {
 
   AttitudeIndependentMagnetometer setup_;
   StaticModel<AttitudeIndependentMagnetometer> model_;
+  bool is_of_readings_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Probe> attitude_independent_probe(double field_strength, double noise) {
+std::unique_ptr<const Probe> attitude_independent_probe(std::optional<double> field_strength,
+                                                        double noise) {
   return std::make_unique<const StrengthOnlyMagnetometer>(field_strength, noise);
 }
 
@@ -124,7 +158,10 @@ const Shipped shipped_attitude_independent{
     .name = "magnetometer-norm",
     .words = "magnetometer without attitude",
     .make = [](const Settings& settings) {
-      const double strength = one_number(settings, "field_strength");
+      const auto given = settings.find("field_strength");
+      const bool is_to_be_found = given != settings.end() && given->second.empty();
+      const auto strength =
+          is_to_be_found ? std::nullopt : std::optional(one_number(settings, "field_strength"));
       return attitude_independent_probe(strength, one_number(settings, "field_noise"));
     }};
 

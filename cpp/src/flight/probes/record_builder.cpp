@@ -256,19 +256,29 @@ void RecordBuilder::keep_valid() {
     });
   };
   const auto is_whole = [&](std::size_t row) { return find_invalid(row) == quantities.end(); };
-  if (is_joined_) {
-    keep(is_whole, "a needed column has no samples on both sides of them");
-    return;
-  }
-  refuse_other_rates(quantities, is_whole);
-  keep_or_refuse(is_whole, "a cell of a needed column is no finite number", [&](std::size_t row) {
-    const LoggedQuantity& quantity = **find_invalid(row);
+  const auto say_cell = [&](const LoggedQuantity& quantity, std::size_t row) {
     const bool time = quantity.unit->kind == files::UnitKind::time;
     return fmt::format(
         "column '{}' {}, not {}", quantity.column->header,
         files::describe_cell(*quantity.column, row),
         time ? "a time in numbers, as 12.34, whose start does not matter" : "a finite number");
-  });
+  };
+  for (const LoggedQuantity* quantity : quantities) {
+    const auto first = rows_.find_if_not([](std::size_t) { return false; });
+    const auto is_there = [&](std::size_t row) { return !files::is_reading(quantity->at(row)); };
+    if (!first || rows_.find_if_not(is_there)) continue;
+    throw OptionError(
+        {fmt::format("{}: {}, and has none in any of {} rows; ", flight_.locate(*first),
+                     say_cell(*quantity, *first), rows_.size()),
+         Option{"map"}, " reads it from another column"});
+  }
+  if (is_joined_) {
+    keep(is_whole, "a needed column has no samples on both sides of them");
+    return;
+  }
+  refuse_other_rates(quantities, is_whole);
+  keep_or_refuse(is_whole, "a cell of a needed column is no finite number",
+                 [&](std::size_t row) { return say_cell(**find_invalid(row), row); });
 }
 
 /// Where columns of numbers hardly ever stand in one row, each was logged by itself.
@@ -333,6 +343,10 @@ void RecordBuilder::keep_or_refuse(const RowTest& test, std::string_view reason,
                                    const std::function<std::string(std::size_t row)>& complaint) {
   const Loss loss = keep(test, reason);
   if (loss.rows == 0 || drop_invalid_) return;
+  if (rows_.empty()) {
+    throw Error(fmt::format("{}: {}; none of {} rows is without such a fault",
+                            flight_.locate(loss.first), complaint(loss.first), loss.rows));
+  }
   throw OptionError({fmt::format("{}: {}; ", flight_.locate(loss.first), complaint(loss.first)),
                      Option{"drop_invalid"}, " drops such rows"});
 }

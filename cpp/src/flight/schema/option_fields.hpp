@@ -261,7 +261,7 @@ inline constexpr std::tuple option_fields{
                         "measured one: smooth, linear or held",
             .unset = "they stand in one row",
             .flags = "--join",
-            .form = "HOW",
+            .form = "smooth|linear|held",
             .in_file = InFile::where_set}),
     option("smooth_inputs", &LogChoice::smooth_inputs,
            {.sentence = "takes the white noise out of the columns that the model reads as inputs, "

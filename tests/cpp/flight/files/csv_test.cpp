@@ -19,6 +19,7 @@ using sepcal::CsvReader;
 using sepcal::Error;
 using sepcal::parse_number;
 using sepcal::test::TemporaryFolder;
+using namespace std::string_literals;
 using namespace std::string_view_literals;
 
 namespace {
@@ -178,6 +179,24 @@ TEST_CASE("binary files name the byte") {
         "with LF or CRLF");
 }
 
+TEST_CASE("forms that nobody reads are named with the way out") {
+  for (const auto bytes : {"CDF\x01\0\0\0\0\0\0\0\x0a"sv, "CDF\x02\0\0\0\0\0\0\0\x0a"sv}) {
+    CHECK(refuse(bytes) ==
+          "flight.csv: this is a file of another form (classic netCDF), no CSV file; write it as "
+          "netCDF-4, which sepcal's Python package reads: nccopy -k netCDF-4 OLD.nc NEW.nc");
+  }
+  // By the format's table: kind, rows, columns, complex or not, the name's length, the name.
+  const std::string little = "\0\0\0\0\x05\0\0\0\x01\0\0\0\0\0\0\0\x07\0\0\0time_s\0"s;
+  const std::string big = "\0\0\x03\xe8\0\0\0\x05\0\0\0\x01\0\0\0\0\0\0\0\x07time_s\0"s;
+  for (const std::string& head : {little, big}) {
+    CHECK(refuse(head + std::string(40, '\0')) ==
+          "flight.csv: this is a file of another form (MATLAB 4), no CSV file; load it in MATLAB "
+          "and save it anew, which sepcal's Python package reads: save('log.mat', '-v7')");
+  }
+  CHECK(refuse("BZh91AY&SY") ==
+        "flight.csv: this is a file of another form (bzip2), no CSV file; unpack it: bunzip2");
+}
+
 TEST_CASE("UTF-8 is taken as it is, other bytes for Windows-1252") {
   CHECK(read_rows("a,b\n\xC2\xB5T,\xE2\x82\xAC\xF0\x9F\x9B\xA9\n") ==
         Rows{{"a", "b"}, {"\xC2\xB5T", "\xE2\x82\xAC\xF0\x9F\x9B\xA9"}});
@@ -205,6 +224,15 @@ TEST_CASE("other delimiters, and decimal commas") {
 TEST_CASE("thousands, and what may be either") {
   CHECK(numbers_of("a;b\n1.234,5;2\n") == Numbers{{1234.5, 2.0}});
   CHECK(numbers_of("a;b\n1'234.5;2\n") == Numbers{{1234.5, 2.0}});
+  CHECK(numbers_of("a;b\n1\xE2\x80\x99"
+                   "234.5;2\n") == Numbers{{1234.5, 2.0}});
+  CHECK(numbers_of("a;b\n-1\xE2\x80\x99"
+                   "234\xE2\x80\x99"
+                   "567.5;2\n12;3\n") == Numbers{{-1234567.5, 2.0}, {12.0, 3.0}});
+  CHECK(numbers_of("a;b\n1\x92"
+                   "234.5;2\n") == Numbers{{1234.5, 2.0}});  // in Windows-1252
+  CHECK(numbers_of("a;b\n1\xE2\x80\x99"
+                   "23;2\n") == Numbers{{{}, 2.0}});
   CHECK(numbers_of("a;b\n1 234,5;2\n") == Numbers{{1234.5, 2.0}});
   CHECK(numbers_of("a;b\n\"1,234.5\";2\n") == Numbers{{1234.5, 2.0}});
   CHECK(numbers_of("a;b\n1,234;0,5\n") == Numbers{{1.234, 0.5}});
@@ -226,6 +254,51 @@ TEST_CASE("thousands, and what may be either") {
   CHECK(numbers_of("a;b\n1.234,5;2\n27.65;2\n") == Numbers{{1234.5, 2.0}, {{}, 2.0}});
   CHECK(numbers_of("a\n\xE2\x88\x92"
                    "1.5\n2\n") == Numbers{{-1.5}, {2.0}});
+}
+
+/// A file of three variables as the standard's example has one: a scale, flags of readings that are
+/// missing and below the limit.
+const char* const icartt =
+    "19, 1001, V02_2016\n"
+    "Doe, Jane\n"
+    "An institute\n"
+    "Air data of a \"test aircraft\n"
+    "A MISSION\n"
+    "1, 1\n"
+    "2024, 05, 04, 2024, 06, 01\n"
+    "1.0\n"
+    "Time_Start, seconds, Time_Start, seconds from midnight UTC\n"
+    "3\n"
+    "1, 1, 0.1\n"
+    "-9999, -9999, -99999\n"
+    "TAS, m/s, Platform_AirSpeed\n"
+    "alt, m\n"
+    "press, hPa, Met_StaticPressure\n"
+    "0\n"
+    "1\n"
+    "LLOD_FLAG: -8888\n"
+    "Time_Start, TAS, alt, press\n"
+    "43200, 101.5, 1200, 9000\n"
+    "43201, -9999, 1201, 9001\n"
+    "43202, 102.5, -8888, -99999\n";
+
+TEST_CASE("ICARTT") {
+  CHECK(read_rows(icartt)[0] == Lines{"time_s", "TAS (m/s)", "alt (m)", "press (hPa)"});
+  CHECK(numbers_of(icartt) == Numbers{{43200.0, 101.5, 1200.0, 900.0},
+                                      {43201.0, {}, 1201.0, 0.1 * 9001},
+                                      {43202.0, 102.5, {}, {}}});
+  CHECK(notes_of(icartt) ==
+        Lines{"ICARTT: the 19 lines of the head give names and units, and which numbers are "
+              "missing ones",
+              "time is from 'Time_Start', in seconds"});
+  const TemporaryFolder folder;
+  CsvReader reader(folder.write(icartt));
+  CHECK(reader.text() == "Time_Start (seconds),TAS (m/s),alt (m),press (hPa)");
+  while (reader.next()) {
+    if (reader.line() == 22) CHECK(reader.text() == "43202,102.5,,");
+  }
+  // A head that is not whole is lines above the rows.
+  CHECK(read_rows("3, 1001\nx\na,b\n1,2\n3,4\n")[0] == Lines{"a", "b"});
 }
 
 TEST_CASE("lines above the rows") {
@@ -283,6 +356,27 @@ TEST_CASE("exponents of Fortran") {
 TEST_CASE("a unit in each cell") {
   CHECK(read_rows("v,n\n14.2 m/s,1\n15 m/s,2\n").front() == Lines{"v (m/s)", "n"});
   CHECK(numbers_of("v,n\n14.2 m/s,1\n15 m/s,2\n") == Numbers{{14.2, 1.0}, {15.0, 2.0}});
+}
+
+TEST_CASE("units that differ from cell to cell") {
+  const std::string table = "a,ias\n1,12 kt\n2,10 m/s\n3,14 kt\n";
+  CHECK(read_rows(table)[0] == Lines{"a", "ias (kt)"});
+  CHECK(numbers_of(table) == Numbers{{1.0, 12.0}, {2.0, {}}, {3.0, 14.0}});
+  CHECK(notes_of(table) ==
+        Lines{"cells of ias are in kt and others in m/s: those in kt alone are read; convert the "
+              "rest",
+              "the cells of ias name their unit"});
+}
+
+TEST_CASE("a line of units that contradicts a header") {
+  const std::string table = "time_s,ias_kt,alt_ft\ns,m/s,feet\n0,12,3\n1,13,3\n2,12,3\n";
+  CHECK(read_rows(table)[0] == Lines{"time_s", "ias_kt", "alt_ft"});
+  CHECK(notes_of(table) ==
+        Lines{"line 2 gives units",
+              "the header ias_kt and the line of units, m/s, say different units: the header "
+              "holds"});
+  CHECK(notes_of("time_s,IAS [kt],p_radps,vn_mps\ns,kts,rad/s,m/s\n0,1,2,3\n1,2,3,4\n") ==
+        Lines{"line 2 gives units"});
 }
 
 TEST_CASE("lines that are no rows") {
@@ -378,6 +472,30 @@ TEST_CASE("time in text") {
   CHECK(read_rows("time,x\n10.50000,1\n10.50003,2\n").front() == Lines{"time", "x"});
   // Which count is not known: nothing is guessed.
   CHECK(read_rows("t,x\n0,1\n200,2\n400,3\n").front() == Lines{"t", "x"});
+}
+
+TEST_CASE("clocks of points, and packed ones that say so") {
+  const std::string points = "UTC,a\n10.14.30.0,1\n10.14.30.5,2\n10.15.01.25,3\n";
+  CHECK(numbers_of(points) == Numbers{{36870.0, 1.0}, {36870.5, 2.0}, {36901.25, 3.0}});
+  CHECK(notes_of(points) == Lines{"time is from 'UTC', a time of day, in seconds since midnight"});
+  const std::string dates = "day,a\n30.04.24,1\n30.04.24,2\n";
+  CHECK(read_rows(dates)[0] == Lines{"day", "a"});  // no clock
+  const std::string packed = "hhmmss,a\n101430.0,1\n101430.5,2\n";
+  CHECK(numbers_of(packed) == Numbers{{36870.0, 1.0}, {36870.5, 2.0}});
+  CHECK(notes_of(packed) ==
+        Lines{"time is from 'hhmmss', a time of day as HHMMSS, in seconds since midnight"});
+}
+
+TEST_CASE("counts since an epoch whose digits are lost") {
+  std::string rows;
+  for (int i = 0; i < 20; ++i) rows += "1.714781E+09," + std::to_string(i) + "\n";
+  const std::string said =
+      "' has lost the digits that tell its rows apart: row after row is '1.714781E+09'; have it "
+      "written with all digits, as 1714781000.25";
+  CHECK(refuse("Timestamp,a\n" + rows) == "flight.csv: 'Timestamp" + said);
+  CHECK(refuse("time_s,a\n" + rows) == "flight.csv: 'time_s" + said);
+  CHECK(read_rows("time_s,Timestamp\n0,1.714781E+09\n1,1.714781E+09\n").size() == 3);
+  CHECK(read_rows("a,b\n" + rows).size() == 21);
 }
 
 TEST_CASE("gzip and Zstandard") {

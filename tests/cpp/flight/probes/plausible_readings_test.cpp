@@ -79,6 +79,55 @@ TEST_CASE("angles beyond a turn look like degrees") {
   CHECK(describe("yaw", UnitKind::angle, {0, 500}).ends_with("; check its unit"));
 }
 
+TEST_CASE("a yaw that counts its turns in radians") {
+  Values time, yaw, north, east, rate, in_degrees;
+  for (int i = 0; i < 400; ++i) {
+    time.push_back(0.1 * i);
+    yaw.push_back(0.05 * i);  // 20 rad: three turns and more, at 0.5 rad/s
+    north.push_back(15.0 * std::cos(yaw.back()) + 3.0);
+    east.push_back(15.0 * std::sin(yaw.back()) - 2.0);
+    rate.push_back(0.5);
+    in_degrees.push_back(std::fmod(yaw.back() * 57.29577951308232, 360.0));
+  }
+  const auto with_course = [&](const Values& values) {
+    return Readings()
+        .add("yaw", UnitKind::angle, values)
+        .add("vn", UnitKind::speed, north)
+        .add("ve", UnitKind::speed, east)
+        .describe();
+  };
+  const auto with_rate = [&](const Values& values) {
+    return Readings()
+        .add("yaw", UnitKind::angle, values)
+        .add("time", UnitKind::time, time)
+        .add("r", UnitKind::rate, rate)
+        .describe();
+  };
+  const auto with_field = [&](const Values& values) {
+    Values x, y, z;
+    for (const double angle : yaw) {  // level, with hard iron
+      x.push_back(20.0 * std::cos(angle) + 8.0);
+      y.push_back(-20.0 * std::sin(angle) - 5.0);
+      z.push_back(45.0);
+    }
+    return Readings()
+        .add("yaw", UnitKind::angle, values)
+        .add("mx", UnitKind::field, x)
+        .add("my", UnitKind::field, y)
+        .add("mz", UnitKind::field, z)
+        .describe();
+  };
+  CHECK(with_field(yaw).empty());
+  REQUIRE(with_field(in_degrees).size() == 1);
+  CHECK(with_field(in_degrees)[0].ends_with("--map yaw_deg=yaw_rad reads it so"));
+  CHECK(with_course(yaw).empty());
+  CHECK(with_rate(yaw).empty());
+  REQUIRE(with_course(in_degrees).size() == 1);
+  CHECK(with_course(in_degrees)[0].ends_with("--map yaw_deg=yaw_rad reads it so"));
+  REQUIRE(with_rate(in_degrees).size() == 1);
+  CHECK(with_rate(in_degrees)[0].ends_with("--map yaw_deg=yaw_rad reads it so"));
+}
+
 TEST_CASE("temperature, density and static pressure") {
   CHECK(describe("temp", UnitKind::temperature, {12, 15}).find("if it is in degc") !=
         std::string::npos);

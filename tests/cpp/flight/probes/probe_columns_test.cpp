@@ -144,7 +144,8 @@ TEST_CASE("rates are zeros unless they are logged, and needed with a lever arm")
   CHECK(column(bad, "p") == std::vector<double>(10));
   CHECK(mentions(bad.notes, "log: column 'q_radps' is not used: holds nan"));
   CHECK(refuse(log.build(), {.lever_arm = true}) ==
-        "log row 0: column 'q_radps' holds nan, not a finite number; drop_invalid drops such rows");
+        "log row 0: column 'q_radps' holds nan, not a finite number, and has none in any of 10 "
+        "rows; map reads it from another column");
 }
 
 TEST_CASE("missing columns, unknown units, quantities given twice") {
@@ -269,8 +270,17 @@ TEST_CASE("rows without excess pressure are dropped, up to a fifth") {
 TEST_CASE("a flight of which nothing is left") {
   Log log = make_five_hole_log();
   log["vn_mps"].assign(10, not_a_number);
-  CHECK(refuse(log.build(), {.log = {.drop_invalid = true}}) ==
-        "log: no row is left of 10: a cell of a needed column is no finite number");
+  CHECK(
+      refuse(log.build(), {.log = {.drop_invalid = true}}) ==
+      "log row 0: column 'vn_mps' holds nan, not a finite number, and has none in any of 10 rows; "
+      "map reads it from another column");
+  for (std::size_t i = 0; i < 10; ++i) log["vn_mps"][i] = i < 5 ? 1.0 : not_a_number;
+  log["rho_kgpm3"].assign(10, -1.2);
+  CHECK(refuse(log.build()) ==
+        "log row 5: column 'vn_mps' holds nan, not a finite number; drop_invalid drops such rows");
+  log["vn_mps"].assign(10, 1.0);
+  CHECK(refuse(log.build()) ==
+        "log row 0: rho is not positive; none of 10 rows is without such a fault");
   for (auto& [name, values] : log.columns) values.clear();
   CHECK(refuse(log.build()) == "log: no row is left of 0: there was none");
 }

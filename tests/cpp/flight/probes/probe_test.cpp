@@ -175,6 +175,10 @@ TEST_CASE("a probe is made again from its name and settings") {
                                                             {"field_noise", {0.3}}};
   CHECK(attitude_independent_probe(48.0, 0.3)->settings() == strength);
   CHECK(make_probe("magnetometer-norm", strength)->settings() == strength);
+  const std::map<std::string, std::vector<double>> of_readings{{"field_strength", {}},
+                                                               {"field_noise", {0.0}}};
+  CHECK(attitude_independent_probe(std::nullopt)->settings() == of_readings);
+  CHECK(make_probe("magnetometer-norm", of_readings)->settings() == of_readings);
 }
 
 TEST_CASE("for effects a record has the flow angles as read and the temperature in K") {
