@@ -59,6 +59,7 @@ def test_another_flight_has_a_wind_of_its_own(method: str) -> None:
     for name, true in {"s_va": 0.95, "c_va": 0.0, "w_n": 6.0, "w_e": -5.0}.items():
         for row in (0, 500, -1):
             assert abs(track[name][row] - true) < 4 * track.standard_deviation(name)[row]
+    for name in ("s_va", "c_va"):
         assert track.standard_deviation(name)[-1] < alone.standard_deviation(name)[-1]
     assert track.standard_deviation("s_va")[-1] < base["s_va"].standard_error
     assert not any("--own" in note for note in track.notes)
