@@ -18,7 +18,7 @@ void TrackArguments::add_to(CLI::App& verb) {
       ->type_name("HOW")
       ->capture_default_str();
   verb.add_option("--forgetting", options_.how.forgetting,
-                  "of rml: what a sample counts for after the next")
+                  "what a sample counts for after the next, above 0, at most 1")
       ->type_name("MU")
       ->capture_default_str();
   add_whole_number(verb, "--every", options_.how.every,

@@ -16,6 +16,7 @@ from sepcal import Error
 from sepcal.__main__ import BAD_INPUT, Parser
 from sepcal.progress import show_progress
 from studies import (
+    changes,
     effect_coverage,
     field_strength,
     flight_path,
@@ -40,6 +41,7 @@ STUDIES: tuple[Study, ...] = (
     effect_coverage.STUDY,
     field_strength.STUDY,
     starts.STUDY,
+    changes.STUDY,
     flight_path.STUDY,
     frequency_domain.STUDY,
     trajectories.STUDY,

@@ -415,7 +415,7 @@ class AircraftFit(Fit):
                 unknown].
             row_iterations: Of iekf, at most so many a row.
             tolerance: Of iekf.
-            forgetting: Of rml: what a sample counts for after the next, above 0, at most 1.
+            forgetting: What a sample counts for after the next, above 0, at most 1.
             every: Of rml: samples from a step of the parameters to the next.
 
         Raises:

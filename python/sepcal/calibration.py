@@ -191,6 +191,7 @@ class Calibration(Fit):
         changes: Literal["ignore", "find", "follow"] | str = "ignore",
         row_iterations: int = 20,
         tolerance: float = 1e-8,
+        forgetting: float = 1.0,
     ) -> Track:
         """Parameters against time, as a filter in flight estimates them.
 
@@ -206,6 +207,7 @@ class Calibration(Fit):
             changes: "find" or "follow" parameters that jump, as of sepcal.track().
             row_iterations: Of iekf, at most so many a row.
             tolerance: Of iekf.
+            forgetting: What a sample counts for after the next, above 0, at most 1.
 
         Raises:
             Error: The calibration's own flight without start_rows, whose rows must not count twice;
@@ -233,6 +235,7 @@ class Calibration(Fit):
             changes=changes,
             row_iterations=row_iterations,
             tolerance=tolerance,
+            forgetting=forgetting,
             start_rows=start_rows,
             own=own,
         )

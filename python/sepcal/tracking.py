@@ -213,7 +213,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             [ten times the largest value of the state on the way, as good as unknown].
         row_iterations: Of iekf, at most so many a row.
         tolerance: Of iekf: it ends where a step is shorter, in standard deviations of the estimate.
-        forgetting: Of rml: what a sample counts for after the next, above 0, at most 1.
+        forgetting: What a sample counts for after the next, above 0, at most 1.
         every: Of rml: samples from a step of the parameters to the next.
         **options: FitOptions.
 

@@ -53,6 +53,17 @@ double run_jointly(const double* y, int count) {
     cost += filter.update(row.u, Reading(y[k]), One(0.1)).cost();
     cost += filter.update_iterated(row.u, Reading(y[k]), One(0.1)).cost();
   }
+  sepcal::ChangeTest<4, 2, double, 5> changes;
+  for (int k = 1; k < count; ++k) {
+    const sepcal::StateRow<Body> last = row;
+    row.time += 0.1;
+    filter.predict(last, row, One(0.01), {}, changes);
+    const Reading z(y[k]);
+    if (filter.update(row.u, z, One(0.1), changes) == sepcal::ChangeStatus::changed) {
+      filter.follow_change(changes);
+    }
+  }
+  changes.restart();
   filter.restart(filter.x(), Eigen::Matrix2d::Identity());
   sepcal::JointFilter<sepcal::ScalarExample2, Form> samples(
       {}, {Eigen::Vector4d::Zero(), Eigen::Matrix4d::Identity()});

@@ -213,13 +213,13 @@ def test_samples_are_refused_where_nothing_is_sampled() -> None:
 
 @pytest.mark.parametrize(
     ("option", "value"),
-    [("forgetting", 0.9), ("every", 5), ("row_iterations", 3), ("tolerance", 1e-3)],
+    [("every", 5), ("row_iterations", 3), ("tolerance", 1e-3)],
 )
 def test_a_track_refuses_what_is_of_another_method(option: str, value: float) -> None:
     """By name, with the method that it is of."""
     eta = np.linspace(1.0, 10.0, 120)
     data = {"eta": eta, "time": eta, "z": 1.3 * np.cos(eta + 0.2) + 1.0}
-    owner = "rml" if option in ("forgetting", "every") else "iekf"
+    owner = "rml" if option == "every" else "iekf"
     for method in ("rls", "ekf", "srif"):
         with pytest.raises(sepcal.Error, match=f"{option} is of {owner} alone"):
             sepcal.track(

@@ -173,6 +173,29 @@ def test_an_aircraft_that_changes_is_followed() -> None:
     assert abs(still["La"][-1] - 10.0) > 10 * still.standard_deviation("La")[-1]
 
 
+@pytest.mark.parametrize("method", ["rls", "ekf", "iekf", "srif"])
+def test_what_is_forgotten_by_hand(method: str) -> None:
+    """Of z = k v + c: weighted least squares, every row worth 0.97 of the next."""
+    draw = np.random.default_rng(8)
+    v = 15.0 + 5.0 * np.sin(0.3 * np.arange(300))
+    k = np.where(np.arange(300) < 150, 2.0, 1.5)
+    data = {"v": v, "z": k * v + 0.7 + 0.1 * draw.standard_normal(300)}
+    found = sepcal.track(
+        Line(), data, start_rows=40, method=method, noise={"z": 0.1}, forgetting=0.97
+    )
+    for row in (41, 200, 299):
+        H = np.column_stack([v, np.ones(300)])[: row + 1]
+        weight = 0.97 ** np.minimum(row - np.arange(row + 1), row - 39)
+        information = H.T @ (weight[:, None] * H) / 0.01
+        by_hand = np.linalg.solve(information, H.T @ (weight * data["z"][: row + 1]) / 0.01)
+        assert_allclose(found["k"][row - 40], by_hand[0], rtol=1e-7)
+        deviation = np.sqrt(np.linalg.inv(information)[0, 0])
+        assert_allclose(found.standard_deviation("k")[row - 40], deviation, rtol=1e-6)
+    for wrong in (0.0, 1.1, -0.5):
+        with pytest.raises(sepcal.Error, match="forgetting is what a sample counts for after"):
+            sepcal.track(Line(), data, start_rows=40, method=method, forgetting=wrong)
+
+
 def halved(seed: int = 5, rows: int = 1600, at: int = 800) -> dict[str, np.ndarray]:
     """A roll mode whose aileron loses half of its power at row `at`, noise in the states."""
     draw = np.random.default_rng(seed)

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double between_onsets = 0.5;  // s
 constexpr double to_confirm = 2.0;      // s
-constexpr double patience = 4.5;        // s
+constexpr double patience = 3.5;        // s
 
 /// The mean time from a row to the next [s]; 0 where there are none, or no time.
 double mean_step(const Record& record) {

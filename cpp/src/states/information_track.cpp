@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "states/information_track.hpp"
 
+#include <cmath>
+
 namespace sepcal::states {
 
 using Eigen::Index;
@@ -33,6 +35,13 @@ bool InformationTrack::absorb(const MatrixXd& sample) {
   MatrixXd rows = sample;
   factor_.absorb(rows);
   return true;
+}
+
+void InformationTrack::forget(double by) {
+  if (by == 1.0) return;
+  MatrixXd rows = std::sqrt(by) * factor_.matrix();
+  factor_ = TriangularFactor(factor_.columns());
+  factor_.absorb(rows);
 }
 
 MatrixXd InformationTrack::root() const {

@@ -17,6 +17,8 @@ class InformationTrack {
   explicit InformationTrack(const Eigen::MatrixXd& R);
   /// False, and nothing absorbed, where a number is not finite.
   bool absorb(const Eigen::MatrixXd& sample);
+  /// All that was absorbed counts for so much less: R'R by it.
+  void forget(double by);
   Eigen::VectorXd solution() const;    // k
   Eigen::VectorXd deviations() const;  // k
   Eigen::MatrixXd root() const;        // k x k

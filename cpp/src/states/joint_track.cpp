@@ -323,6 +323,7 @@ class JointStream {
     next.Phi.topRows(n_x()) = of_estimated(step.Phi);
     const FilterStatus status = filter.predict(next);
     if (status != FilterStatus::refused) watch_.predict(next.Phi);
+    forget(filter, options_.forgetting);
     return status;
   }
 

@@ -3,7 +3,10 @@
 // size, on a computer that has a heap; the tests hold the two beside each other.
 #pragma once
 
+#include <cmath>
+
 #include "sepcal/detail/states/state_steps.hpp"
+#include "sepcal/states/filter.hpp"
 #include "sepcal/states/track.hpp"
 
 namespace sepcal::states {
@@ -15,6 +18,14 @@ Eigen::VectorXd walk_of(const std::vector<std::string>& names, const TrackOption
 
 /// Seconds from a row to a later one; rows where the record has no time.
 double seconds_between(const Record& record, std::size_t row, std::size_t later);
+
+/// Fading memory: what the filter knows counts for so much less, its covariance by the inverse.
+template <class Form>
+void forget(Filter<Eigen::Dynamic, Form>& filter, double by) {
+  if (by == 1.0) return;
+  filter = Filter<Eigen::Dynamic, Form>(
+      filter.x(), Form::of_covariance_root(filter.form().root() / std::sqrt(by)));
+}
 
 /// `method` is ekf, iekf or srif. Throws Error as track().
 Track track_jointly(const StateBlockModel& model, const Record& record, const StreamStart& start,

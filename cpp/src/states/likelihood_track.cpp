@@ -57,8 +57,28 @@ class LikelihoodStream {
     for (const Variable& noise : plan_.model().noise) names.push_back("q_" + noise.name);
     for (const Variable& output : plan_.tables().outputs) names.push_back("r_" + output.name);
     track_ = empty_track(std::move(names), record_.rows() - start_.rows, static_cast<int>(n_z_));
-    std::size_t seen = 0;
     std::unique_ptr<Recursion> recursion;
+    follow(recursion, record_.rows());
+    return std::move(track_);
+  }
+
+  /// What the start's rows tell of the logarithms of the process noises' sizes, all else known, n_w;
+  /// infinite of those that are held.
+  VectorXd told_of_sizes() {
+    std::unique_ptr<Recursion> recursion;
+    follow(recursion, start_.rows);
+    VectorXd information(n_w_);
+    for (Index k = 0; k < n_w_; ++k) {
+      const Index at = n_ + n_x_ + k;
+      information[k] = free_[at] ? recursion->information_root().col(at).squaredNorm() : infinity;
+    }
+    return information;
+  }
+
+ private:
+  /// From the record's begin, so many rows.
+  void follow(std::unique_ptr<Recursion>& recursion, std::size_t until) {
+    std::size_t seen = 0;
     for (const Segment& segment : record_.segments()) {
       const bool fitted = seen < start_.rows;  // its x(0) is among what the start knows
       Scores filter = begin(segment, fitted, recursion.get());
@@ -73,12 +93,11 @@ class LikelihoodStream {
         base::heed_stop();
         if (row > segment.first) predict(*recursion, row - 1);
         update(*recursion, row, seen++);
+        if (seen == until) return;
       }
     }
-    return std::move(track_);
   }
 
- private:
   /// The place of a name in the start. Throws Error where it isn't there.
   bool is_free_in_start(Index place) const {
     return std::ranges::find(start_.free, static_cast<int>(place)) != start_.free.end();
@@ -270,6 +289,28 @@ class LikelihoodStream {
 
 }  // namespace
 
+namespace {
+
+/// The start with noises that its rows don't tell, which a fit leaves at their floor, as large as
+/// they may be without being told: a recursion that begins at the floor finds no slope there, and
+/// stays, surer than it may be.
+StreamStart with_sizes(const StateBlockModel& model, const Record& record, StreamStart start,
+                       const TrackOptions& options) {
+  constexpr int most = 40;
+  constexpr double factor = 2.0;
+  if (start.rows == 0 || start.process_noise.size() == 0) return start;
+  for (int pass = 0; pass < most; ++pass) {
+    const VectorXd told = LikelihoodStream(model, record, start, options).told_of_sizes();
+    if ((told.array() >= 1.0).all()) break;
+    for (Index k = 0; k < told.size(); ++k) {
+      if (told[k] < 1.0) start.process_noise[k] *= factor;
+    }
+  }
+  return start;
+}
+
+}  // namespace
+
 Track track_likelihood(const StateBlockModel& model, const Record& record, const StreamStart& start,
                        const TrackOptions& options) {
   const TrajectoryOptions& along = model.plan().options();
@@ -277,13 +318,11 @@ Track track_likelihood(const StateBlockModel& model, const Record& record, const
   if (along.scales_about_start) {
     throw Error("a track has no start to count scales from; leave scales_about_start out");
   }
-  if (!(options.forgetting > 0.0 && options.forgetting <= 1.0)) {
-    throw Error("forgetting is what a sample counts for after the next: above 0, at most 1");
-  }
   if (options.every < 1) throw Error("every must be at least 1 sample");
   base::deviations_in_order(model.plan().model().states, options.initial_states, "state");
   check_inputs(model.tables(), record);
-  return LikelihoodStream(model, record, start, options).run();
+  const StreamStart begin = with_sizes(model, record, start, options);
+  return LikelihoodStream(model, record, begin, options).run();
 }
 
 }  // namespace sepcal::states

@@ -86,7 +86,10 @@ void check_of_method(const TrackOptions& options) {
       (options.method == TrackMethod::rls || options.method == TrackMethod::rml)) {
     throw OptionError({Option{"changes"}, " is of ekf, iekf and srif; leave it out, or take ekf"});
   }
-  refuse(options.forgetting != by_default.forgetting, "forgetting", TrackMethod::rml);
+  if (!(options.forgetting > 0.0 && options.forgetting <= 1.0)) {
+    throw OptionError({Option{"forgetting"},
+                       " is what a sample counts for after the next: above 0, at most 1"});
+  }
   refuse(options.every != by_default.every, "every", TrackMethod::rml);
   refuse(options.iterations.iterations != by_default.iterations.iterations, "row_iterations",
          TrackMethod::iekf);
@@ -170,7 +173,8 @@ class Collected {
 };
 
 /// Rows linearised at the start, absorbed one sample after another.
-void track_linearised(Samples& samples, const StreamStart& start, Collected& collected) {
+void track_linearised(Samples& samples, const StreamStart& start, const TrackOptions& options,
+                      Collected& collected) {
   const VectorXd x = start.xi(start.free);
   const Index n_z = samples.noise().size();
   states::InformationTrack filter(start.R);
@@ -182,6 +186,7 @@ void track_linearised(Samples& samples, const StreamStart& start, Collected& col
       for (std::size_t i = 0; i < range.rows; ++i) {
         if (range.offset + i < start.rows) continue;
         const MatrixXd sample = rows.middleRows(static_cast<Index>(i) * n_z, n_z);
+        filter.forget(options.forgetting);
         const VectorXd before = filter.solution();
         const VectorXd e = sample.rightCols<1>() - sample.leftCols(x.size()) * before;
         if (!filter.absorb(sample)) ++collected.track().refused;
@@ -220,6 +225,7 @@ void track_filtered(Samples& samples, const Record& record, const StreamStart& s
               Transition<Dynamic, Dynamic>{filter.x(), same, same, (seconds * walk).asDiagonal()});
         }
         before = one.first;
+        states::forget(filter, options.forgetting);
         const auto expected = [&](const VectorXd& x) -> Linearisation<Dynamic, Dynamic> {
           const MatrixXd rows = samples.rows(one, x, nullptr);
           return {-rows.rightCols<1>(), rows.leftCols(x.size())};
@@ -272,7 +278,7 @@ Track track(const BlockModel& model, const Record& record, const StreamStart& st
   Samples samples(model, record, start, states::noise_of(model.tables().outputs, start, options));
   Collected collected(record, start, model.tables().n_z());
   if (options.method == TrackMethod::rls) {
-    track_linearised(samples, start, collected);
+    track_linearised(samples, start, options, collected);
   } else if (options.method == TrackMethod::srif) {
     track_filtered<InformationForm<Dynamic>>(samples, record, start, options, collected);
   } else {

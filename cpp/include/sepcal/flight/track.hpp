@@ -18,8 +18,9 @@ struct FlightTrackOptions {
   /// Stages one and two on so many first rows, and on after them; 0: from the calibration of
   /// another flight.
   std::size_t start_rows = 0;
-  /// Of a probe that starts from first rows: parameters of this flight alone, as a wind; all others
-  /// begin as the calibration has them, of another flight. Empty: the rows alone tell.
+  /// Of a probe: parameters of this flight alone, as a wind, whose size the first rows tell; all
+  /// others begin as the calibration has them, of another flight, and every row is followed. Empty:
+  /// the first rows alone tell all.
   std::vector<std::string> own = {};
 };
 

@@ -19,7 +19,7 @@ namespace sepcal {
 struct ChangeTestOptions {
   int rows_between = 25;  // from an onset that is tried to the next
   int confirm = 100;    // from an alarm to its verdict: an outlier's evidence fades, a jump's grows
-  int patience = 225;   // the same where another parameter explains it as well
+  int patience = 175;   // the same where several parameters jump, or another explains it as well
   double alarm = 30.0;  // (score / its deviation)^2 of one parameter at one onset
   double join = 12.0;   // what a further parameter has to explain of the same
   double nonlinear = 0.1;  // of a jump's size: what its linearisation may be off
@@ -207,7 +207,9 @@ class ChangeTest {
   bool is_told() const {
     const int since = rows_ - alarm_;
     if (since >= options_.patience) return true;
-    return since % std::max(1, options_.rows_between / 5) == 0 && !jump().is_ambiguous();
+    if (since % std::max(1, options_.rows_between / 5) != 0) return false;
+    const Jump<N, K, Scalar> now = jump();
+    return now.count == 1 && !now.is_ambiguous();
   }
 
   /// Score and information of those that are chosen; of the others the identity, which tells

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sepcal/flight/track.hpp"
 
-#include <fmt/format.h>
-
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <map>
+#include <utility>
 
 #include "base/name_list.hpp"
 #include "flight/tracks/flight_rows.hpp"
@@ -19,22 +18,56 @@ using namespace verbs;  // the room below
 
 namespace {
 
-/// Each parameter as the calibration has it, but for those of the flight alone.
-std::map<std::string, Normal> priors_of(const Fit& fit, const std::vector<std::string>& own) {
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// (R'R)^-1
+MatrixXd covariance_of(const MatrixXd& R) {
+  const MatrixXd inverse =
+      R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(R.rows(), R.cols()));
+  return inverse * inverse.transpose();
+}
+
+/// Where a parameter stands among those that are estimated. Throws Error where it doesn't.
+Index place_of(const StreamStart& start, const std::string& name) {
   std::vector<std::string> names;
-  std::map<std::string, Normal> priors;
-  for (const Parameter& parameter : fit.parameters) {
-    if (!(parameter.standard_error > 0.0)) continue;  // held
-    names.push_back(parameter.name);
-    if (std::ranges::find(own, parameter.name) != own.end()) continue;
-    priors[parameter.name] = {parameter.value, parameter.standard_error};
+  for (const int k : start.free) names.push_back(start.names[static_cast<std::size_t>(k)]);
+  const auto at = std::ranges::find(names, name);
+  if (at != names.end()) return at - names.begin();
+  throw OptionError({Option{"own"}, ": '" + name + "' is not estimated; there are " +
+                                        base::list_first(names, 12)});
+}
+
+/// The calibration's start with `own` where first rows have them, all else held, and so wide that
+/// these rows may be followed once more: ten of their standard errors, a hundredth of what they tell.
+StreamStart with_own(const Calibration& calibration, const EffectiveFlight& effective,
+                     FitOptions fit, const FlightTrackOptions& options) {
+  constexpr double wide = 10.0;
+  StreamStart start = start_from_fit(calibration.fit);
+  MatrixXd P = covariance_of(start.R);
+  for (const std::string& name : options.own) place_of(start, name);
+  for (std::size_t k = 0; k < start.names.size(); ++k) {
+    const std::string& name = start.names[k];
+    if (std::ranges::find(options.own, name) == options.own.end()) {
+      fit.fix[name] = start.xi[static_cast<Index>(k)];
+      fit.bounds.erase(name);
+    }
   }
-  for (const std::string& name : own) {
-    if (std::ranges::find(names, name) != names.end()) continue;
-    throw OptionError({Option{"own"}, fmt::format(": '{}' is not estimated; there are {}", name,
-                                                  base::list_first(names, 12))});
+  const StreamStart found =
+      start_from_rows(*effective.model, effective.prepared.record, options.start_rows, fit);
+  const MatrixXd own = covariance_of(found.R);
+  for (const std::string& name : options.own) {
+    const Index from = place_of(found, name);
+    const Index to = place_of(start, name);
+    start.xi[start.free[static_cast<std::size_t>(to)]] =
+        found.xi[found.free[static_cast<std::size_t>(from)]];
+    P.row(to).setZero();
+    P.col(to).setZero();
+    P(to, to) = wide * wide * own(from, from);
   }
-  return priors;
+  const MatrixXd information = P.ldlt().solve(MatrixXd::Identity(P.rows(), P.cols()));
+  start.R = information.llt().matrixU();
+  return start;
 }
 
 StreamStart start_of(const Calibration& calibration, const Flight& flight,
@@ -57,7 +90,7 @@ StreamStart start_of(const Calibration& calibration, const Flight& flight,
   fit.noise = options.how.noise;
   fit.stage_one_segments.clear();  // of the calibration's own flight
   fit.stage_two_segments.clear();
-  if (!options.own.empty()) fit.prior = priors_of(calibration.fit, options.own);
+  if (!options.own.empty()) return with_own(calibration, effective, std::move(fit), options);
   return start_from_rows(*effective.model, effective.prepared.record, options.start_rows, fit);
 }
 
