@@ -117,13 +117,24 @@ class AircraftFit(Fit):
         parameters = len(self.parameters)
         return f"{self.model} by {self.method}: {self.status}, {parameters} parameters"
 
-    def compare(self, flight: AnyFlight | Sequence[AnyFlight] | None = None) -> Comparison:
+    def compare(
+        self,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
+        *,
+        reference: str | Sequence[str] = (),
+    ) -> Comparison:
         """Residuals on a flight, by default the fitted one.
 
         Of another flight the initial states are estimated anew, all else is held.
 
+        Args:
+            flight: To compare with.
+            reference: Columns of independent sensors, as of Calibration.compare(); they are set
+                against what apply() gives.
+
         Raises:
-            Error: Bad input, as in fit(); no flight given where the fit was loaded.
+            Error: Bad input, as in fit(); no flight given where the fit was loaded; a reference
+                that is not there, or of nothing that apply() gives.
 
         Example:
             >>> flight = sepcal.datasets.load("aircraft")
@@ -131,7 +142,9 @@ class AircraftFit(Fit):
             >>> round(path.compare().overall[0].rmse, 1)  # of the airspeed
             0.2
         """
-        return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core), self.noise)
+        chosen = self._or_fitted(flight, "compare(")
+        names = [reference] if isinstance(reference, str) else list(reference)
+        return Comparison(self.core.compare(chosen._core, names), self.noise)
 
     def residuals(
         self, flight: AnyFlight | Sequence[AnyFlight] | None = None

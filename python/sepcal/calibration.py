@@ -137,13 +137,24 @@ class Calibration(Fit):
         """The fit alone."""
         return Fit(self)
 
-    def compare(self, flight: AnyFlight | Sequence[AnyFlight] | None = None) -> Comparison:
+    def compare(
+        self,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
+        *,
+        reference: str | Sequence[str] = (),
+    ) -> Comparison:
         """Residuals on a flight, by default the fitted one, by maneuver and output.
 
         Of a joint fit: on all its flights, or on one of them.
 
+        Args:
+            flight: To compare with.
+            reference: Columns of independent sensors, "airspeed_2_mps", which what is calibrated is
+                set against in `references`; "airspeed_kt=TAS" where a name doesn't say what it is.
+
         Raises:
-            Error: Bad input, as in fit(); no flight given where the calibration was loaded.
+            Error: Bad input, as in fit(); no flight given where the calibration was loaded; a
+                reference that is not there, or of nothing that is calibrated.
 
         Example:
             >>> flight = sepcal.datasets.load("pitot")
@@ -153,7 +164,8 @@ class Calibration(Fit):
             ('wind_circle_1', 'airspeed', 0.6)
         """
         core, chosen = self._on(flight, "compare(", known=True)
-        return Comparison(core.compare(chosen._core), self.noise)
+        names = [reference] if isinstance(reference, str) else list(reference)
+        return Comparison(core.compare(chosen._core, references=names), self.noise)
 
     def residuals(
         self, flight: AnyFlight | Sequence[AnyFlight] | None = None

@@ -103,6 +103,8 @@ def picture_comparison(comparison: Comparison, what: str) -> list[Figure]:
         per = "noise of the fit" if known else "RMSE overall"
         sizes = [known.get(misfit.output, misfit.rmse) for misfit in comparison.overall]
         return [draw_heat_strip(comparison.where, outputs, sizes, per, _title(comparison.where))]
+    if what == "references":
+        return _picture_references(comparison)
     sizes = [misfit.rmse for misfit in comparison.overall]
     drawn = [
         draw_beside_zero(
@@ -112,6 +114,20 @@ def picture_comparison(comparison: Comparison, what: str) -> list[Figure]:
         for i, misfit in enumerate(comparison.overall)
     ]  # fmt: skip
     return name_bands(drawn, "2 RMSE to either side")
+
+
+def _picture_references(comparison: Comparison) -> list[Figure]:
+    """What is calibrated less each reference, over time."""
+    if not comparison.references:
+        raise _core.Error('there is no reference: compare(reference="COLUMN") names one')
+    drawn = [
+        draw_beside_zero(
+            f"difference of {at.calibrated} to {at.reference}", at.unit, at.time, at.difference,
+            np.full(at.time.size, at.rms), [],
+        )
+        for at in comparison.references
+    ]  # fmt: skip
+    return name_bands(drawn, "2 rms to either side")
 
 
 def _title(where: Sequence[_core.Misfit]) -> str:

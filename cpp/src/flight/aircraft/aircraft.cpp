@@ -16,8 +16,10 @@
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/aircraft/trajectory_effects.hpp"
 #include "flight/files/flight_digest.hpp"
+#include "flight/verbs/reference_comparison.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/aircraft/two_step.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
 
@@ -209,7 +211,8 @@ AircraftFit add_to_aircraft(const AircraftFit& base, const Flight& flight,
   return next;
 }
 
-Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
+Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight,
+                            const std::vector<std::string>& references) {
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
   base::ThreadPool pool(fitted.options.calibration.fit.threads);
   const Fit at = fit_on(flight, fitted, laid);
@@ -222,6 +225,13 @@ Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
                                channels_beside(laid, innovations.e), flight, fitted.fit, pool);
   if (by_filter) judge_by_filter(result, innovations, fitted, at, laid);
   result.model = to_string(fitted.options.model);
+  if (!references.empty()) {
+    std::vector<std::string> told_by_compare;
+    result.references =
+        verbs::compare_references(references, apply_aircraft(fitted, flight, {}, told_by_compare),
+                                  {read_as(flight, fitted.options.calibration.log).flight, flight},
+                                  {.record = laid.record, .flight_rows = laid.flight_rows});
+  }
   result.notes = std::move(laid.notes);
   return result;
 }

@@ -7,6 +7,7 @@
 #include "flight/verbs/at_bound.hpp"
 #include "flight/verbs/misfits.hpp"
 #include "flight/verbs/residual_channels.hpp"
+#include "flight/verbs/validation.hpp"
 #include "flight/verbs/worst_windows.hpp"
 #include "model/measurements.hpp"
 #include "model/sweep.hpp"
@@ -51,6 +52,7 @@ Comparison compare_residuals(Eigen::MatrixXd residuals, const Tables& tables, co
   result.time = base::gather_time(record);
   result.overall = measure_whole(record, tables.outputs, result.residuals);
   result.where = measure_parts(record, tables.outputs, result.residuals);
+  result.validation = validate_outputs(tables.outputs, result.modelled, result.residuals);
   result.channels = compare_channels(channels, tables, result.residuals, pool);
   result.windows = find_worst_windows(result.time, result.residuals, result.overall, fit.noise);
   return result;
