@@ -16,10 +16,13 @@ __all__: list[str] = [
     "Certificate",
     "Change",
     "ChannelMisfit",
+    "Collinearity",
     "ColumnCheck",
     "Combination",
     "Comparison",
+    "CorrelatedPair",
     "CostBound",
+    "CostLandscape",
     "Departure",
     "Derived",
     "DetectionLimit",
@@ -93,6 +96,8 @@ __all__: list[str] = [
     "check_not_input",
     "check_output",
     "concatenation",
+    "confidence_ellipse",
+    "cost_landscape",
     "effects",
     "effects_of",
     "example_in_five_states",
@@ -687,6 +692,69 @@ class StageOne:
         One minimum and no flat direction.
         """
 
+class CorrelatedPair:
+    """
+    Two estimates that go together.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("first", "second", "correlation")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def correlation(self) -> float: ...
+    @property
+    def first(self) -> str: ...
+    @property
+    def second(self) -> str: ...
+
+class Collinearity:
+    """
+    Which estimates a record hardly tells apart (Belsley, Kuh & Welsch).
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "names",
+        "pairs",
+        "condition_indices",
+        "variance_proportions",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def condition_indices(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (k,), from 1 up; above 30 columns hardly differ.
+        """
+    @property
+    def names(self) -> list[str]:
+        """
+        The k estimates that have a standard error.
+        """
+    @property
+    def pairs(self) -> list[CorrelatedPair]:
+        """
+        |correlation| above 0.9, strongest first.
+        """
+    @property
+    def variance_proportions(
+        self,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (k, k): the share of an estimate's variance (a column each) by the direction of each condition index (a row each).
+        """
+
 class Fit:
     """
     The two-stage batch estimate.
@@ -728,6 +796,11 @@ class Fit:
     def _asdict(self) -> dict[str, typing.Any]:
         """
         {field: value}, as of a named tuple.
+        """
+    @property
+    def collinearity(self) -> Collinearity:
+        """
+        Which estimates the record hardly tells apart.
         """
     @property
     def correlation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -3830,6 +3903,16 @@ class FlightFigures:
     @property
     def within_95(self) -> list[float]: ...
 
+class CostLandscape:
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def trace_r(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def units(self) -> list[str]: ...
+
 class Departure:
     """
     Does a flight's own estimate of the shared parameters agree with that of all the others?
@@ -4192,6 +4275,14 @@ def check(arg0: Model, arg1: Flight, arg2: Options) -> FlightCheck: ...
 def check_not_input(arg0: str, arg1: str) -> None: ...
 def check_output(arg0: str) -> None: ...
 def concatenation(arg0: collections.abc.Sequence[tuple[str, Model]]) -> Model: ...
+def confidence_ellipse(
+    arg0: Fit,
+    arg1: str,
+    arg2: str,
+    arg3: typing.SupportsFloat | typing.SupportsIndex,
+    arg4: typing.SupportsInt | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+def cost_landscape(arg0: Calibration, arg1: Flight) -> CostLandscape: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
 def effects_of(arg0: Model) -> list[CataloguedEffect]: ...
 def example_in_five_states() -> TwoStepProblem: ...

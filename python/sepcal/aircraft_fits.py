@@ -462,7 +462,9 @@ class AircraftFit(Fit):
 
     def plot(
         self,
-        what: Literal["fit", "channels", "states", "innovations", "process noise", "correlation"]
+        what: Literal[
+            "fit", "channels", "states", "innovations", "process noise", "correlation", "ellipses"
+        ]
         | str = "fit",
         flight: Flight | Sequence[Flight] | None = None,
         *,
@@ -474,8 +476,9 @@ class AircraftFit(Fit):
 
         Args:
             what: "fit", measured over modelled with the residuals below; "channels", residuals
-                against the channels that they follow most; "correlation" of the estimates; with
-                process noise "states", "innovations" and "process noise".
+                against the channels that they follow most; "correlation" of the estimates,
+                "ellipses" of the pairs that are correlated most; with process noise "states",
+                "innovations" and "process noise".
             flight: By default the fitted one.
             process_noise: As of smooth() [of a fit by filter error what it found].
             backend: "plotly", or "matplotlib".
@@ -498,9 +501,9 @@ class AircraftFit(Fit):
         from sepcal.plotting.of_fits import picture_aircraft, picture_fit
 
         smoothed = ("states", "innovations", "process noise")
-        choose(what, ("fit", "channels", *smoothed, "correlation"))
-        if what == "correlation":
-            return as_figure(picture_fit(self), backend, theme)
+        choose(what, ("fit", "channels", *smoothed, "correlation", "ellipses"))
+        if what in ("correlation", "ellipses"):
+            return as_figure(picture_fit(self, what), backend, theme)
         chosen = self._or_fitted(flight, "plot(flight=")
         given = process_noise or {}
         return as_figure(picture_aircraft(self, what, chosen, given), backend, theme)

@@ -459,7 +459,10 @@ class Calibration(Fit):
 
     def plot(
         self,
-        what: Literal["fit", "channels", "noise", "coverage", "steps", "correlation"] | str = "fit",
+        what: Literal[
+            "fit", "channels", "noise", "coverage", "steps", "correlation", "ellipses", "stage one"
+        ]
+        | str = "fit",
         flight: Flight | Sequence[Flight] | None = None,
         *,
         backend: Backend = "plotly",
@@ -471,7 +474,9 @@ class Calibration(Fit):
             what: "fit", measured over modelled with the residuals below; "channels", residuals
                 against the channels that they follow most; "noise", whether what is left is noise;
                 "coverage", what the flight covered; "steps", the error after every effect that was
-                added; "correlation" of the estimates.
+                added; "correlation" of the estimates, "ellipses" of the pairs that are correlated
+                most; "stage one", Tr[R] over the nonlinear parameters within their bounds: a curve,
+                a map, of more than two the least over all others for each pair.
             flight: By default the fitted one.
             backend: "plotly", or "matplotlib".
             theme: "light" or "dark".
@@ -492,9 +497,10 @@ class Calibration(Fit):
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_calibration, picture_fit, picture_steps
 
-        choose(what, ("fit", "channels", "noise", "coverage", "steps", "correlation"))
-        if what == "correlation":
-            return as_figure(picture_fit(self), backend, theme)
+        of_estimates = ("correlation", "ellipses")
+        choose(what, ("fit", "channels", "noise", "coverage", "steps", *of_estimates, "stage one"))
+        if what in of_estimates:
+            return as_figure(picture_fit(self, what), backend, theme)
         if what == "steps":
             return as_figure(picture_steps(self), backend, theme)
         core, chosen = self._on(flight, "plot(flight=", known=True)

@@ -155,7 +155,7 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   first.model = AircraftModel::path;
   first.calibration.effects.clear();
   // As one with a state, which the path has.
-  ProbeRecord prepared = prepare(flight, AircraftModel::six_dof, second.calibration.log);
+  ProbeRecord prepared = prepare(flight, AircraftModel::six_dof, second.calibration.log, false);
   TwoStep steps = within(flight, [&] {
     return two_step(prepared.record, geometry_of(second),
                     {.equations = equations_of(second),

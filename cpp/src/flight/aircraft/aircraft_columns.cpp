@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/columns.hpp"
+#include "base/name_list.hpp"
 #include "flight/aircraft/believed_rows.hpp"
 #include "flight/probes/air_columns.hpp"
 #include "flight/probes/joined_quantities.hpp"
@@ -40,6 +41,32 @@ void need_air(RecordBuilder& builder, const Flight& flight) {
   } else {
     probes::need_density(builder, flight, "rho_kgpm3, or temp_k and ps_pa, or qbar_pa");
   }
+}
+
+/// A flight in the plane of symmetry: of what lies across it, zeros where a log has nothing.
+Flight within_symmetry(const Flight& flight, std::vector<std::string>& notes) {
+  const RecordBuilder logged(flight, quantities_of(AircraftModel::longitudinal).list, {});
+  Flight whole = flight;
+  std::vector<std::string> added;
+  const auto add = [&](const char* name, const char* header) {
+    if (logged.has({name})) return;
+    whole.add(header, std::vector<double>(flight.rows(), 0.0));
+    added.emplace_back(name);
+  };
+  add("ay", "ay_mps2");
+  add("p", "p_radps");
+  add("r", "r_radps");
+  add("beta", "beta_rad");
+  add("roll", "roll_rad");
+  if (added.empty()) return flight;
+  if (logged.has({"qdot"})) {
+    add("pdot", "pdot_radps2");
+    add("rdot", "rdot_radps2");
+  }
+  notes.push_back(
+      fmt::format("{}: no column for {}, taken as zero, as in flight in the plane of symmetry",
+                  flight.name(), base::list_names(added)));
+  return whole;
 }
 
 /// The record with roll and yaw going on where they are logged within a turn: a state that is
@@ -106,10 +133,20 @@ probes::ModelQuantities quantities_of(AircraftModel model) {
   return {quantities, by_row ? probes::LooksAt::coefficients : probes::LooksAt::trajectory};
 }
 
-ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log) {
+bool is_symmetric(AircraftModel model, const std::vector<AeroEquation>& equations) {
+  if (model != AircraftModel::aero) return model == AircraftModel::longitudinal;
+  return !equations.empty() && std::ranges::all_of(equations, [](const AeroEquation& equation) {
+    return equation.coefficient == "CX" || equation.coefficient == "CZ" ||
+           equation.coefficient == "Cm";
+  });
+}
+
+ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log,
+                    bool symmetric) {
   const ReadFlight read = probes::read_for(quantities_of(model), logged, log);
   const BelievedFlight believed = believe(read.flight, model, log);
-  const Flight& flight = believed.flight;
+  std::vector<std::string> notes;
+  const Flight flight = symmetric ? within_symmetry(believed.flight, notes) : believed.flight;
   RecordBuilder builder(flight, quantities_of(model).list, log);
   refuse_load_factor(builder, flight);
   builder.keep([&](std::size_t row) { return !std::ranges::binary_search(believed.left_out, row); },
@@ -133,8 +170,9 @@ ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& 
   probes::offer_temperature(builder);
   ProbeRecord prepared = builder.finish();
   prepared.record = without_jumps(prepared.record);
-  for (const auto* notes : {&believed.notes, &read.notes}) {
-    prepared.notes.insert(prepared.notes.begin(), notes->begin(), notes->end());
+  for (const std::vector<std::string>* told :
+       {&std::as_const(notes), &believed.notes, &read.notes}) {
+    prepared.notes.insert(prepared.notes.begin(), told->begin(), told->end());
   }
   return prepared;
 }

@@ -181,7 +181,8 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
   laid.effects = options.calibration.effects;
   laid.band = options.band;
   laid.equations = equations_of(options);
-  ProbeRecord prepared = prepare(flight, options.model, options.calibration.log);
+  ProbeRecord prepared = prepare(flight, options.model, options.calibration.log,
+                                 is_symmetric(options.model, laid.equations));
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
   laid.notes = std::move(prepared.notes);
   laid.flight_rows = std::move(prepared.flight_rows);
