@@ -276,7 +276,7 @@ Fit aircraft_log::fit_on(const Flight& flight, const AircraftFit& fitted, LaidAi
     options.process_noise = fitted.fit.process_noise();
     for (const OutputValue& noise : fitted.fit.noise) options.noise[noise.name] = noise.value;
   }
-  return fit(*laid.model, laid.record, options);
+  return fit(*laid.model, readings_of(laid), options);
 }
 
 }  // namespace sepcal

@@ -181,8 +181,10 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
   laid.effects = options.calibration.effects;
   laid.band = options.band;
   laid.equations = equations_of(options);
-  ProbeRecord prepared = prepare(flight, options.model, options.calibration.log,
-                                 is_symmetric(options.model, laid.equations));
+  const bool by_filter = options.calibration.fit.method == FitMethod::filter_error && !options.band;
+  ProbeRecord prepared =
+      prepare(flight, options.model, options.calibration.log,
+              is_symmetric(options.model, laid.equations), by_filter ? &laid.gaps : nullptr);
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
   laid.notes = std::move(prepared.notes);
   laid.flight_rows = std::move(prepared.flight_rows);
@@ -206,6 +208,11 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
       if (laid.band) hold_bent(options, laid);
     }
   });
+  std::erase_if(laid.gaps, [&](const GappedOutput& one) {
+    const std::vector<Variable>& outputs = laid.model->tables().outputs;
+    return std::ranges::find(outputs, one.name, &Variable::name) == outputs.end();
+  });
+  for (GappedOutput& one : laid.gaps) one.values.resize(laid.record.length());  // of first rows
   return laid;
 }
 
@@ -247,9 +254,25 @@ std::vector<EffectSetting> effects_along(const AircraftOptions& options,
 
 Fit fit_laid(LaidAircraft& laid, const FitOptions& options) {
   if (laid.band) return fit_over_band(laid, *laid.band, options);
-  if (laid.along.empty()) return fit(*laid.model, laid.record, options);
-  return estimation::fit_with_steps(*laid.model, *laid.base, laid.along, laid.effects, laid.record,
+  const Record readings = readings_of(laid);
+  if (laid.along.empty()) return fit(*laid.model, readings, options);
+  return estimation::fit_with_steps(*laid.model, *laid.base, laid.along, laid.effects, readings,
                                     options);
+}
+
+Record readings_of(const LaidAircraft& laid) {
+  if (laid.gaps.empty()) return laid.record;
+  base::Columns columns(laid.record);
+  for (const GappedOutput& one : laid.gaps) columns.set(one.name, one.values);
+  return columns.record();
+}
+
+void need_every_reading(const LaidAircraft& laid, std::string_view verb) {
+  if (laid.gaps.empty()) return;
+  throw Error(
+      fmt::format("{} takes a reading of every output in every row, and {} has gaps; leave it out "
+                  "of the fit (--outputs), or fit with --drop-invalid",
+                  verb, laid.gaps.front().name));
 }
 
 Record seen_by_model(const LaidAircraft& laid, const Fit& fit) {

@@ -40,8 +40,12 @@ std::vector<OutputValidation> validate_outputs(const std::vector<Variable>& outp
                                                const Eigen::MatrixXd& residuals) {
   std::vector<OutputValidation> result;
   for (Index j = 0; j < residuals.cols(); ++j) {
-    result.push_back(
-        validate(outputs[static_cast<std::size_t>(j)].name, modelled.col(j), residuals.col(j)));
+    std::vector<Index> there;
+    for (Index row = 0; row < residuals.rows(); ++row) {
+      if (!std::isnan(residuals(row, j))) there.push_back(row);
+    }
+    result.push_back(validate(outputs[static_cast<std::size_t>(j)].name, modelled(there, j),
+                              residuals(there, j)));
   }
   return result;
 }

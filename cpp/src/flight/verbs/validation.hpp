@@ -12,7 +12,8 @@
 
 namespace sepcal::verbs {
 
-/// One an output. `modelled` and `residuals` (z - modelled): N x n_z.
+/// One an output. `modelled` and `residuals` (z - modelled): N x n_z, NaN where there is no
+/// reading.
 std::vector<OutputValidation> validate_outputs(const std::vector<Variable>& outputs,
                                                const Eigen::MatrixXd& modelled,
                                                const Eigen::MatrixXd& residuals);
