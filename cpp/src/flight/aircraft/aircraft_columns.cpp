@@ -182,6 +182,13 @@ probes::ModelQuantities quantities_of(AircraftModel model) {
   return {quantities, by_row ? probes::LooksAt::coefficients : probes::LooksAt::trajectory};
 }
 
+bool has_gaps(const Flight& logged, AircraftModel model, const LogChoice& log) {
+  if (log.drop_invalid) return false;
+  Flight flight = probes::read_for(quantities_of(model), logged, log).flight;
+  std::vector<std::string> notes;
+  return !bridge_outputs(flight, model == AircraftModel::path, notes).empty();
+}
+
 bool is_symmetric(AircraftModel model, const std::vector<AeroEquation>& equations) {
   if (model != AircraftModel::aero) return model == AircraftModel::longitudinal;
   return !equations.empty() && std::ranges::all_of(equations, [](const AeroEquation& equation) {

@@ -23,6 +23,9 @@ struct GappedOutput {
   std::vector<double> values;  // a row of the record each, NaN where there is none
 };
 
+/// Whether prepare() would list gaps.
+bool has_gaps(const Flight& flight, AircraftModel model, const LogChoice& log);
+
 /// time [s]; ax ay az [m/s^2]; p q r [rad/s]; of an aircraft airspeed [m/s], alpha and beta [rad],
 /// rho [kg/m^3] or qbar [Pa]; and whatever else of the models' columns is logged. Throws Error as
 /// prepare_five_hole() does, and for a load factor in place of az. `symmetric`: ay, p, r, beta and

@@ -171,6 +171,22 @@ Fit fit_over_band(LaidAircraft& laid, const Band& band, const FitOptions& option
   return found;
 }
 
+/// By filter error with the gaps of outputs, of which another fit is told where they stop it.
+ProbeRecord prepare_for(const Flight& flight, const AircraftOptions& options, LaidAircraft& laid) {
+  const LogChoice& log = options.calibration.log;
+  const bool symmetric = is_symmetric(options.model, laid.equations);
+  const bool has_state = options.model != AircraftModel::aero && !options.band;
+  if (has_state && options.calibration.fit.method == FitMethod::filter_error) {
+    return prepare(flight, options.model, log, symmetric, &laid.gaps);
+  }
+  try {
+    return prepare(flight, options.model, log, symmetric);
+  } catch (const Error& error) {
+    if (!has_state || !has_gaps(flight, options.model, log)) throw;
+    throw_within("", error, "; filter error takes the readings that are there");
+  }
+}
+
 /// Of the whole flight, or of its first rows.
 LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
                       std::optional<std::size_t> rows) {
@@ -181,10 +197,7 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
   laid.effects = options.calibration.effects;
   laid.band = options.band;
   laid.equations = equations_of(options);
-  const bool by_filter = options.calibration.fit.method == FitMethod::filter_error && !options.band;
-  ProbeRecord prepared =
-      prepare(flight, options.model, options.calibration.log,
-              is_symmetric(options.model, laid.equations), by_filter ? &laid.gaps : nullptr);
+  ProbeRecord prepared = prepare_for(flight, options, laid);
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
   laid.notes = std::move(prepared.notes);
   laid.flight_rows = std::move(prepared.flight_rows);
