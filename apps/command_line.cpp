@@ -136,6 +136,7 @@ class CommandLine {
     add_json(*fit_);
 
     instrument.add_flight_options(*compare_);
+    add_references(*compare_, typed_.references);
     instrument.add_flight_options(*residuals_);
     add_file(*residuals_, "-o,--output", typed_.output, "writes the table there")
         ->type_name("R.csv")

@@ -104,4 +104,15 @@ std::map<std::string, double> parse_deviations(const std::string& option,
   return deviations;
 }
 
+void add_references(CLI::App& verb, std::vector<std::string>& references) {
+  verb.add_option(
+          "--reference", references,
+          "an independent sensor's column of the log, to set what is calibrated against: "
+          "airspeed_2_mps, or airspeed_kt=TAS where its name doesn't say what it is; may be "
+          "repeated")
+      ->type_name("COLUMN")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
 }  // namespace sepcal::app

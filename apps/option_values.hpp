@@ -61,4 +61,7 @@ CLI::Option* add_file(CLI::App& verb, const std::string& name, std::string& file
 /// The argument MORE: other logs, which by their ending are told from what may follow.
 void add_more_flights(CLI::App& verb, std::vector<std::string>& files, const std::string& what);
 
+/// The option --reference: an independent sensor's columns.
+void add_references(CLI::App& verb, std::vector<std::string>& references);
+
 }  // namespace sepcal::app

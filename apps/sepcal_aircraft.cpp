@@ -343,6 +343,7 @@ class AircraftApp {
     add_.add_option("E", effect_, "the effect: Cm[alpha^2], imu_late (see effects)")->required();
     add_output(check_, "C.json", false);
     add_output(compare_, "COMPARED.json", false);
+    add_references(compare_, references_);
     add_output(residuals_, "R.csv", true);
     add_output(intervals_, "I.json", false);
     profiles_.add_to(intervals_);
@@ -466,7 +467,7 @@ class AircraftApp {
   int compare() const {
     Delivery delivery(wishes_, input_files(base_));
     const AircraftFit base = read_aircraft_fit(base_);
-    delivery.deliver(compare_aircraft(base, read_flights(base)));
+    delivery.deliver(compare_aircraft(base, read_flights(base), references_));
     return 0;
   }
 
@@ -606,6 +607,7 @@ class AircraftApp {
   std::string flight_;
   std::vector<std::string> more_flights_;
   std::string base_;
+  std::vector<std::string> references_;
   std::string effect_;
   std::string truth_;
   std::string geometry_;

@@ -134,7 +134,7 @@ int Verbs::compare() const {
   Delivery delivery({arguments_.output, arguments_.json, arguments_.explain}, {});
   const auto [calibration, flight] = read_subject();
   check_known(calibration, flight);
-  delivery.deliver(sepcal::compare(calibration, flight));
+  delivery.deliver(sepcal::compare(calibration, flight, arguments_.references));
   return 0;
 }
 

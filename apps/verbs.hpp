@@ -24,8 +24,9 @@ struct Arguments {
   std::string output;
   std::string truth;
   std::string effect;
-  std::string other;         // of join: the log whose columns are brought
-  RateJoining joining = {};  // of join
+  std::vector<std::string> references;  // of compare
+  std::string other;                    // of join: the log whose columns are brought
+  RateJoining joining = {};             // of join
   bool json = false;
   bool explain = false;   // the whole message of the fit
   bool stream = false;    // of fit and apply

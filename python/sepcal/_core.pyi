@@ -16,10 +16,13 @@ __all__: list[str] = [
     "Certificate",
     "Change",
     "ChannelMisfit",
+    "Collinearity",
     "ColumnCheck",
     "Combination",
     "Comparison",
+    "CorrelatedPair",
     "CostBound",
+    "CostLandscape",
     "Departure",
     "Derived",
     "DetectionLimit",
@@ -57,12 +60,14 @@ __all__: list[str] = [
     "NoiseSize",
     "OptionRow",
     "Options",
+    "OutputValidation",
     "Parameter",
     "ParameterChange",
     "ParameterInterval",
     "Prediction",
     "PreparedFlight",
     "PythonFunctions",
+    "ReferenceMisfit",
     "ResidualNoise",
     "SIGNIFICANT_BELOW",
     "ScreenResults",
@@ -91,6 +96,8 @@ __all__: list[str] = [
     "check_not_input",
     "check_output",
     "concatenation",
+    "confidence_ellipse",
+    "cost_landscape",
     "effects",
     "effects_of",
     "example_in_five_states",
@@ -685,6 +692,69 @@ class StageOne:
         One minimum and no flat direction.
         """
 
+class CorrelatedPair:
+    """
+    Two estimates that go together.
+    """
+
+    _fields: typing.ClassVar[tuple] = ("first", "second", "correlation")
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def correlation(self) -> float: ...
+    @property
+    def first(self) -> str: ...
+    @property
+    def second(self) -> str: ...
+
+class Collinearity:
+    """
+    Which estimates a record hardly tells apart (Belsley, Kuh & Welsch).
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "names",
+        "pairs",
+        "condition_indices",
+        "variance_proportions",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def condition_indices(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (k,), from 1 up; above 30 columns hardly differ.
+        """
+    @property
+    def names(self) -> list[str]:
+        """
+        The k estimates that have a standard error.
+        """
+    @property
+    def pairs(self) -> list[CorrelatedPair]:
+        """
+        |correlation| above 0.9, strongest first.
+        """
+    @property
+    def variance_proportions(
+        self,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (k, k): the share of an estimate's variance (a column each) by the direction of each condition index (a row each).
+        """
+
 class Fit:
     """
     The two-stage batch estimate.
@@ -726,6 +796,11 @@ class Fit:
     def _asdict(self) -> dict[str, typing.Any]:
         """
         {field: value}, as of a named tuple.
+        """
+    @property
+    def collinearity(self) -> Collinearity:
+        """
+        Which estimates the record hardly tells apart.
         """
     @property
     def correlation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -1768,6 +1843,176 @@ class Disturbance:
         Of the rows beyond 3; NaN of a noise that is none or at its floor.
         """
 
+class OutputValidation:
+    """
+    How well a model follows an output over all rows.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "output",
+        "r_squared",
+        "theil",
+        "theil_bias",
+        "theil_variance",
+        "theil_covariance",
+    )
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> tuple: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def output(self) -> str: ...
+    @property
+    def r_squared(self) -> float:
+        """
+        1 - sum (z - model)^2 / sum (z - mean z)^2; may be negative.
+        """
+    @property
+    def theil(self) -> float:
+        """
+        Theil's inequality coefficient, rms(z - model) / (rms(z) + rms(model)): 0 exact, 1 worst.
+        """
+    @property
+    def theil_bias(self) -> float:
+        """
+        Share of the mean square by the difference of the means.
+        """
+    @property
+    def theil_covariance(self) -> float:
+        """
+        The rest, by what doesn't correlate: near 1 of a good model.
+        """
+    @property
+    def theil_variance(self) -> float:
+        """
+        By the difference of the standard deviations.
+        """
+
+class ReferenceMisfit:
+    """
+    A calibrated quantity against an independent sensor's column of the same log.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "quantity",
+        "unit",
+        "calibrated",
+        "reference",
+        "rows",
+        "bias",
+        "bias_error",
+        "rms",
+        "sd",
+        "lag_one",
+        "scale",
+        "scale_error",
+        "offset",
+        "offset_error",
+        "scale_reversed",
+        "time",
+        "difference",
+        "against",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def against(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,) the reference's values.
+        """
+    @property
+    def bias(self) -> float:
+        """
+        Mean of calibrated - reference.
+        """
+    @property
+    def bias_error(self) -> float:
+        """
+        Its standard error, which allows for a coloured difference.
+        """
+    @property
+    def calibrated(self) -> str:
+        """
+        What apply calls it: "airspeed_cal_mps".
+        """
+    @property
+    def difference(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,) calibrated - reference.
+        """
+    @property
+    def lag_one(self) -> float:
+        """
+        Correlation of neighbouring differences.
+        """
+    @property
+    def offset(self) -> float: ...
+    @property
+    def offset_error(self) -> float:
+        """
+        As bias_error.
+        """
+    @property
+    def quantity(self) -> str:
+        """
+        "airspeed", "alpha", "mx"; "field": the calibrated field's strength.
+        """
+    @property
+    def reference(self) -> str:
+        """
+        What the log calls the other.
+        """
+    @property
+    def rms(self) -> float:
+        """
+        Of the difference.
+        """
+    @property
+    def rows(self) -> int:
+        """
+        In which both are there.
+        """
+    @property
+    def scale(self) -> float:
+        """
+        Of calibrated = offset + scale * reference.
+        """
+    @property
+    def scale_error(self) -> float:
+        """
+        As bias_error.
+        """
+    @property
+    def scale_reversed(self) -> float:
+        """
+        One over the scale of the reference on the calibrated; noise of either makes them differ.
+        """
+    @property
+    def sd(self) -> float:
+        """
+        Of the difference about its mean.
+        """
+    @property
+    def time(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,) [s] of the rows in which both are there; row numbers where there is no time.
+        """
+    @property
+    def unit(self) -> str:
+        """
+        Of all numbers but the scales.
+        """
+
 class Comparison:
     """
     A calibration against a flight.
@@ -1788,6 +2033,8 @@ class Comparison:
         "method",
         "sigma",
         "disturbances",
+        "validation",
+        "references",
         "notes",
         "json",
         "text",
@@ -1848,6 +2095,11 @@ class Comparison:
         One an output.
         """
     @property
+    def references(self) -> list[ReferenceMisfit]:
+        """
+        One a column that was given as `reference`.
+        """
+    @property
     def residuals(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
         (N, n_z), z - model; of a fit by filter error innovations.
@@ -1871,6 +2123,11 @@ class Comparison:
     def time(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (N,) [s], of every row used.
+        """
+    @property
+    def validation(self) -> list[OutputValidation]:
+        """
+        One an output.
         """
     @property
     def where(self) -> list[Misfit]:
@@ -3197,7 +3454,12 @@ class Calibration:
         """
         A verb of it, as a shell takes it.
         """
-    def compare(self, flight: Flight, effect: str | None = None) -> Comparison: ...
+    def compare(
+        self,
+        flight: Flight,
+        effect: str | None = None,
+        references: collections.abc.Sequence[str] = [],
+    ) -> Comparison: ...
     def diagnose(
         self,
         arg0: Flight,
@@ -3641,6 +3903,16 @@ class FlightFigures:
     @property
     def within_95(self) -> list[float]: ...
 
+class CostLandscape:
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def trace_r(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def units(self) -> list[str]: ...
+
 class Departure:
     """
     Does a flight's own estimate of the shared parameters agree with that of all the others?
@@ -4003,6 +4275,14 @@ def check(arg0: Model, arg1: Flight, arg2: Options) -> FlightCheck: ...
 def check_not_input(arg0: str, arg1: str) -> None: ...
 def check_output(arg0: str) -> None: ...
 def concatenation(arg0: collections.abc.Sequence[tuple[str, Model]]) -> Model: ...
+def confidence_ellipse(
+    arg0: Fit,
+    arg1: str,
+    arg2: str,
+    arg3: typing.SupportsFloat | typing.SupportsIndex,
+    arg4: typing.SupportsInt | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+def cost_landscape(arg0: Calibration, arg1: Flight) -> CostLandscape: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
 def effects_of(arg0: Model) -> list[CataloguedEffect]: ...
 def example_in_five_states() -> TwoStepProblem: ...

@@ -195,7 +195,9 @@ class Fit:
         arg1: str,
         arg2: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
     ) -> sepcal._core.Applied: ...
-    def compare(self, arg0: sepcal._core.Flight) -> sepcal._core.Comparison: ...
+    def compare(
+        self, flight: sepcal._core.Flight, references: collections.abc.Sequence[str] = []
+    ) -> sepcal._core.Comparison: ...
     def diagnose(
         self,
         arg0: sepcal._core.Flight,

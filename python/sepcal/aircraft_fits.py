@@ -117,13 +117,24 @@ class AircraftFit(Fit):
         parameters = len(self.parameters)
         return f"{self.model} by {self.method}: {self.status}, {parameters} parameters"
 
-    def compare(self, flight: AnyFlight | Sequence[AnyFlight] | None = None) -> Comparison:
+    def compare(
+        self,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
+        *,
+        reference: str | Sequence[str] = (),
+    ) -> Comparison:
         """Residuals on a flight, by default the fitted one.
 
         Of another flight the initial states are estimated anew, all else is held.
 
+        Args:
+            flight: To compare with.
+            reference: Columns of independent sensors, as of Calibration.compare(); they are set
+                against what apply() gives.
+
         Raises:
-            Error: Bad input, as in fit(); no flight given where the fit was loaded.
+            Error: Bad input, as in fit(); no flight given where the fit was loaded; a reference
+                that is not there, or of nothing that apply() gives.
 
         Example:
             >>> flight = sepcal.datasets.load("aircraft")
@@ -131,7 +142,9 @@ class AircraftFit(Fit):
             >>> round(path.compare().overall[0].rmse, 1)  # of the airspeed
             0.2
         """
-        return Comparison(self.core.compare(self._or_fitted(flight, "compare(")._core), self.noise)
+        chosen = self._or_fitted(flight, "compare(")
+        names = [reference] if isinstance(reference, str) else list(reference)
+        return Comparison(self.core.compare(chosen._core, names), self.noise)
 
     def residuals(
         self, flight: AnyFlight | Sequence[AnyFlight] | None = None
@@ -449,7 +462,9 @@ class AircraftFit(Fit):
 
     def plot(
         self,
-        what: Literal["fit", "channels", "states", "innovations", "process noise", "correlation"]
+        what: Literal[
+            "fit", "channels", "states", "innovations", "process noise", "correlation", "ellipses"
+        ]
         | str = "fit",
         flight: Flight | Sequence[Flight] | None = None,
         *,
@@ -461,8 +476,9 @@ class AircraftFit(Fit):
 
         Args:
             what: "fit", measured over modelled with the residuals below; "channels", residuals
-                against the channels that they follow most; "correlation" of the estimates; with
-                process noise "states", "innovations" and "process noise".
+                against the channels that they follow most; "correlation" of the estimates,
+                "ellipses" of the pairs that are correlated most; with process noise "states",
+                "innovations" and "process noise".
             flight: By default the fitted one.
             process_noise: As of smooth() [of a fit by filter error what it found].
             backend: "plotly", or "matplotlib".
@@ -485,9 +501,9 @@ class AircraftFit(Fit):
         from sepcal.plotting.of_fits import picture_aircraft, picture_fit
 
         smoothed = ("states", "innovations", "process noise")
-        choose(what, ("fit", "channels", *smoothed, "correlation"))
-        if what == "correlation":
-            return as_figure(picture_fit(self), backend, theme)
+        choose(what, ("fit", "channels", *smoothed, "correlation", "ellipses"))
+        if what in ("correlation", "ellipses"):
+            return as_figure(picture_fit(self, what), backend, theme)
         chosen = self._or_fitted(flight, "plot(flight=")
         given = process_noise or {}
         return as_figure(picture_aircraft(self, what, chosen, given), backend, theme)

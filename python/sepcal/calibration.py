@@ -137,13 +137,24 @@ class Calibration(Fit):
         """The fit alone."""
         return Fit(self)
 
-    def compare(self, flight: AnyFlight | Sequence[AnyFlight] | None = None) -> Comparison:
+    def compare(
+        self,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
+        *,
+        reference: str | Sequence[str] = (),
+    ) -> Comparison:
         """Residuals on a flight, by default the fitted one, by maneuver and output.
 
         Of a joint fit: on all its flights, or on one of them.
 
+        Args:
+            flight: To compare with.
+            reference: Columns of independent sensors, "airspeed_2_mps", which what is calibrated is
+                set against in `references`; "airspeed_kt=TAS" where a name doesn't say what it is.
+
         Raises:
-            Error: Bad input, as in fit(); no flight given where the calibration was loaded.
+            Error: Bad input, as in fit(); no flight given where the calibration was loaded; a
+                reference that is not there, or of nothing that is calibrated.
 
         Example:
             >>> flight = sepcal.datasets.load("pitot")
@@ -153,7 +164,8 @@ class Calibration(Fit):
             ('wind_circle_1', 'airspeed', 0.6)
         """
         core, chosen = self._on(flight, "compare(", known=True)
-        return Comparison(core.compare(chosen._core), self.noise)
+        names = [reference] if isinstance(reference, str) else list(reference)
+        return Comparison(core.compare(chosen._core, references=names), self.noise)
 
     def residuals(
         self, flight: AnyFlight | Sequence[AnyFlight] | None = None
@@ -450,7 +462,10 @@ class Calibration(Fit):
 
     def plot(
         self,
-        what: Literal["fit", "channels", "noise", "coverage", "steps", "correlation"] | str = "fit",
+        what: Literal[
+            "fit", "channels", "noise", "coverage", "steps", "correlation", "ellipses", "stage one"
+        ]
+        | str = "fit",
         flight: Flight | Sequence[Flight] | None = None,
         *,
         backend: Backend = "plotly",
@@ -462,7 +477,9 @@ class Calibration(Fit):
             what: "fit", measured over modelled with the residuals below; "channels", residuals
                 against the channels that they follow most; "noise", whether what is left is noise;
                 "coverage", what the flight covered; "steps", the error after every effect that was
-                added; "correlation" of the estimates.
+                added; "correlation" of the estimates, "ellipses" of the pairs that are correlated
+                most; "stage one", Tr[R] over the nonlinear parameters within their bounds: a curve,
+                a map, of more than two the least over all others for each pair.
             flight: By default the fitted one.
             backend: "plotly", or "matplotlib".
             theme: "light" or "dark".
@@ -483,9 +500,10 @@ class Calibration(Fit):
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_calibration, picture_fit, picture_steps
 
-        choose(what, ("fit", "channels", "noise", "coverage", "steps", "correlation"))
-        if what == "correlation":
-            return as_figure(picture_fit(self), backend, theme)
+        of_estimates = ("correlation", "ellipses")
+        choose(what, ("fit", "channels", "noise", "coverage", "steps", *of_estimates, "stage one"))
+        if what in of_estimates:
+            return as_figure(picture_fit(self, what), backend, theme)
         if what == "steps":
             return as_figure(picture_steps(self), backend, theme)
         core, chosen = self._on(flight, "plot(flight=", known=True)

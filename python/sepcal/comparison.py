@@ -59,7 +59,7 @@ class Comparison(Page, _core.Comparison):
 
     def plot(
         self,
-        what: Literal["where", "residuals"] | str = "where",
+        what: Literal["where", "residuals", "references"] | str = "where",
         *,
         backend: Backend = "plotly",
         theme: Theme = "light",
@@ -67,7 +67,8 @@ class Comparison(Page, _core.Comparison):
         """Draws where the model fails; against the channels: Calibration.plot("channels").
 
         Args:
-            what: "where", the error by stretch of the flight and output; "residuals", over time.
+            what: "where", the error by stretch of the flight and output; "residuals", over time;
+                "references", what is calibrated less the references over time.
             backend: "plotly", or "matplotlib".
             theme: "light" or "dark".
 
@@ -75,7 +76,7 @@ class Comparison(Page, _core.Comparison):
             A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
 
         Raises:
-            Error: Another word for one of these; the library is not installed.
+            Error: Another word for one of these; no reference; the library is not installed.
 
         Example:
             >>> flight = sepcal.datasets.load("pitot")
@@ -86,7 +87,7 @@ class Comparison(Page, _core.Comparison):
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_comparison
 
-        choose(what, ("where", "residuals"))
+        choose(what, ("where", "residuals", "references"))
         return as_figure(picture_comparison(self, what), backend, theme, columns=1)
 
     def _summary(self) -> str:

@@ -57,6 +57,10 @@ def add_to(commands: Commands[argparse.ArgumentParser]) -> None:
     _add(verbs, "effects", _effects, "the effects that the model may lack")
     verb = _add(verbs, "compare", _compare, "the residual by output, maneuver and channel")
     _add_subject(verb)
+    verb.add_argument(
+        "--reference", action="append", default=[], metavar="COLUMN",
+        help="an independent sensor's column, to set the model's output against",
+    )  # fmt: skip
     verb = _add(verbs, "diagnose", _diagnose, "which physical effect is missing?")
     _add_subject(verb)
     _add_output(verb, "FOUND.json", needed=False)
@@ -297,7 +301,7 @@ def _fit(given: argparse.Namespace) -> int:
 
 def _compare(given: argparse.Namespace) -> int:
     calibration, flight = _read_subject(given, whole=False)
-    compared = calibration.compare(flight)
+    compared = calibration.compare(flight, reference=given.reference)
     _tell_notes(compared.notes)
     _deliver(given, compared, compared.to_json())
     return 0

@@ -62,9 +62,49 @@ class Fit(Page, _core.Fit):
         """Names of the parameters that a bound stopped."""
         return [name for name, parameter in self.parameters.items() if parameter.at_bound]
 
+    @property
+    def collinearity(self) -> _core.Collinearity:
+        """Which estimates the record hardly tells apart, by their covariance.
+
+        `names` (k) are those that have a standard error; `pairs` those whose correlation is above
+        0.9 either way, the strongest first; `condition_indices` (k,), from 1 up, of J with columns
+        of unit length, above 30 where columns hardly differ; `variance_proportions` (k, k) the
+        share of an estimate's variance, a column each, by the direction of each index, a row each.
+        Belsley, Kuh and Welsch, Regression Diagnostics, ch. 3.
+        """
+        return super().collinearity
+
+    def ellipse(self, first: str, second: str, *, level: float = 0.95, points: int = 73) -> Array:
+        """The ellipse that holds the true values of two parameters in `level` of all records.
+
+        By the covariance of the estimates, which allows for coloured residuals.
+
+        Args:
+            first: A parameter with a standard error.
+            second: Another one.
+            level: How often it should hold both at once.
+            points: On the ellipse, the last one being the first again.
+
+        Returns:
+            Shape (points, 2), in the parameters' units.
+
+        Raises:
+            Error: A parameter that isn't there, is named twice or has no standard error; a level
+                outside (0, 1); fewer than four points.
+
+        Example:
+            >>> flight = sepcal.datasets.load("pitot")
+            >>> base = sepcal.fit(sepcal.PitotStatic(), flight)
+            >>> around = base.ellipse("w_n", "w_e")
+            >>> centre = around[:-1].mean(axis=0)
+            >>> np.allclose(centre, [base["w_n"].value, base["w_e"].value]), around.shape
+            (True, (73, 2))
+        """
+        return _core.confidence_ellipse(self, first, second, level, points)
+
     def plot(
         self,
-        what: Literal["correlation"] | str = "correlation",
+        what: Literal["correlation", "ellipses", "stage one"] | str = "correlation",
         *,
         backend: Backend = "plotly",
         theme: Theme = "light",
@@ -72,7 +112,9 @@ class Fit(Page, _core.Fit):
         """Draws how the estimates go together.
 
         Args:
-            what: "correlation", of the parameters that are not fixed.
+            what: "correlation", of the parameters that are not fixed; "ellipses", in which 95 % of
+                records have the true values of the pairs that are correlated most; "stage one",
+                Tr[R] at the samples of the nonlinear parameters.
             backend: "plotly", or "matplotlib".
             theme: "light" or "dark".
 
@@ -92,8 +134,8 @@ class Fit(Page, _core.Fit):
         from sepcal.plotting import as_figure, choose
         from sepcal.plotting.of_fits import picture_fit
 
-        choose(what, ("correlation",))
-        return as_figure(picture_fit(self), backend, theme)
+        choose(what, ("correlation", "ellipses", "stage one"))
+        return as_figure(picture_fit(self, what), backend, theme)
 
     def _summary(self) -> str:
         return f"{self.status}, {len(self.parameters)} parameters, {self.rows} rows"

@@ -65,7 +65,7 @@ def test_compare(bench: Bench, flight: str):
     result = compared.result
     assert list(result) == [
         "schema_version", "model", "inputs", "status", "message", "rmse", "residual", "where",
-        "channels", "windows",
+        "channels", "windows", "validation",
     ]  # fmt: skip
     assert result["inputs"] == {
         "file": flight,

@@ -167,7 +167,7 @@ def test_a_figure_never_loads_or_uploads_anything() -> None:
 def test_what_is_asked_wrongly_is_said_in_a_line() -> None:
     flight = sepcal.simulate("pitot-static", rows=200)
     base = sepcal.fit(sepcal.PitotStatic(), flight)
-    with pytest.raises(sepcal.Error, match=r"^what is 'fits'; it is 'fit', 'channels', .* or 'c"):
+    with pytest.raises(sepcal.Error, match=r"^what is 'fits'; it is 'fit', 'channels', .* or 's"):
         base.plot("fits")
     with pytest.raises(sepcal.Error, match=r"^backend is 'bokeh'; it is 'plotly' or 'matplotlib'$"):
         base.plot(backend="bokeh")

@@ -16,6 +16,7 @@
 #include "sepcal/detail/identifiability.hpp"    // what a record does not determine
 #include "sepcal/profile.hpp"            // intervals where standard errors mislead
 #include "sepcal/prediction.hpp"         // what a fit says of other samples
+#include "sepcal/collinearity.hpp"       // estimates that are hardly told apart
 #include "sepcal/certificate.hpp"        // what is proven of a cost
 #include "sepcal/detail/rivals/single_stage.hpp"       // what the estimator is measured against
 #include "sepcal/detail/rivals/haupt_kasdin.hpp"

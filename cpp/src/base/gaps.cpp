@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/gaps.hpp"
 
+#include <cmath>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -111,6 +113,23 @@ double find_gap(std::vector<double> intervals) {
 
 double find_gap(std::size_t count, const PassOverIntervals& pass) {
   return find_gap_of(PassedIntervals(count, pass));
+}
+
+void bridge_gaps(std::span<double> values) {
+  const std::size_t none = values.size();
+  std::size_t last = none;  // that is there
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (std::isnan(values[row])) continue;
+    const std::size_t first = last == none ? 0 : last + 1;
+    for (std::size_t at = first; at < row; ++at) {
+      const double share =
+          last == none ? 1.0 : static_cast<double>(at - last) / static_cast<double>(row - last);
+      values[at] = last == none ? values[row] : values[last] + share * (values[row] - values[last]);
+    }
+    last = row;
+  }
+  if (last == none) return;
+  for (std::size_t at = last + 1; at < values.size(); ++at) values[at] = values[last];
 }
 
 }  // namespace sepcal::base

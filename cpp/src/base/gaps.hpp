@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a gap in time is: one definition for segments, runs of noise and what is said of a log.
+// What a gap in time is: one definition for segments, runs of noise and what is said of a log. And
+// gaps in a column, bridged.
 #pragma once
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace sepcal::base {
@@ -23,5 +25,9 @@ using PassOverIntervals = std::function<void(const std::function<void(double)>& 
 /// The same of so many intervals that they are not copied: in memory that does not grow with them,
 /// by some fifteen passes.
 double find_gap(std::size_t count, const PassOverIntervals& pass);
+
+/// Puts straight lines where values are NaN, from neighbour to neighbour by row; beyond the first
+/// and the last one these stay. Nothing where all are NaN.
+void bridge_gaps(std::span<double> values);
 
 }  // namespace sepcal::base

@@ -231,10 +231,11 @@ void define_fits(py::module_& module) {
       .def_property_readonly("file", [](const AircraftFit& self) { return self.flight.file; })
       .def(
           "compare",
-          [](const AircraftFit& self, const Flight& flight) {
-            return compared(compare_aircraft(self, flight));
+          [](const AircraftFit& self, const Flight& flight,
+             const std::vector<std::string>& references) {
+            return compared(compare_aircraft(self, flight, references));
           },
-          WithoutGil())
+          "flight"_a, "references"_a = std::vector<std::string>(), WithoutGil())
       .def("residuals", &residuals_on)
       .def("diagnose", &diagnose_on)
       .def("intervals", &intervals_on)

@@ -48,6 +48,22 @@ void define_comparison(py::module_& module) {
       .comparable()
       .finish();
 
+  BoundStruct<OutputValidation>(module, "OutputValidation",
+                                "How well a model follows an output over all rows.")
+      .told()
+      .comparable()
+      .finish();
+
+  BoundStruct<ReferenceMisfit>(
+      module, "ReferenceMisfit",
+      "A calibrated quantity against an independent sensor's column of the same log.")
+      .told()
+      .field("time", &ReferenceMisfit::time,
+             "(N,) [s] of the rows in which both are there; row numbers where there is no time.")
+      .field("difference", &ReferenceMisfit::difference, "(N,) calibrated - reference.")
+      .field("against", &ReferenceMisfit::against, "(N,) the reference's values.")
+      .finish();
+
   BoundStruct<Compared>(module, "Comparison", "A calibration against a flight.")
       .field("model", &Compared::comparison, &Comparison::model, "")
       .field(
@@ -73,6 +89,9 @@ void define_comparison(py::module_& module) {
              "By filter error and output: rms of innovations in the filter's standard deviations.")
       .field("disturbances", &Compared::comparison, &Comparison::disturbances,
              "By filter error, one a process noise.")
+      .field("validation", &Compared::comparison, &Comparison::validation, "One an output.")
+      .field("references", &Compared::comparison, &Comparison::references,
+             "One a column that was given as `reference`.")
       .field("notes", &Compared::comparison, &Comparison::notes, "One line each, for people.")
       .field("json", &Compared::json, "")
       .field("text", &Compared::page, &Page::text, "What print() shows: the app's page.")

@@ -11,6 +11,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "flight/verbs/cost_landscape.hpp"
 #include "numerics/residual_curves.hpp"
 #include "python_effect.hpp"
 #include "released.hpp"
@@ -20,6 +21,7 @@
 namespace sepcal::bindings {
 namespace {
 
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::vector<SegmentRows> describe(const std::vector<Segment>& segments) {
@@ -80,6 +82,11 @@ FlightFigures gather(const Calibration& calibration, const Flight& flight) {
   return gather_figures(calibration, flight);
 }
 
+CostLandscape landscape(const Calibration& calibration, const Flight& flight) {
+  need_own_effects(calibration);
+  return find_cost_landscape(calibration, flight);
+}
+
 }  // namespace
 
 void define_figures(py::module_& module) {
@@ -104,6 +111,24 @@ void define_figures(py::module_& module) {
       .def_readonly("heading_is_track", &Figures::heading_is_track)
       .def("channel", &channel);
   module.def("gather_figures", &gather, WithoutGil());
+  using Landscape = CostLandscape;
+  py::class_<Landscape>(module, "CostLandscape")
+      .def_property_readonly("names",
+                             [](const Landscape& self) {
+                               std::vector<std::string> names;
+                               for (const auto& one : self.parameters) names.push_back(one.name);
+                               return names;
+                             })
+      .def_property_readonly("units",
+                             [](const Landscape& self) {
+                               std::vector<std::string> units;
+                               for (const auto& one : self.parameters) units.push_back(one.unit);
+                               return units;
+                             })
+      .def_property_readonly(
+          "points", [](const Landscape& self) { return MatrixXd(self.points.transpose()); })
+      .def_readonly("trace_r", &Landscape::trace_r);
+  module.def("cost_landscape", &landscape, WithoutGil());
   module.def("autocorrelation", &autocorrelation);
   module.def("spectrum", &spectrum);
   module.def("quantiles",

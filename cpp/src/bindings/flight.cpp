@@ -170,11 +170,12 @@ ResidualColumns residuals_on(const Calibration& calibration, const Flight& fligh
 
 /// With an effect added where one is named.
 Compared compare_flight(const Calibration& calibration, const Flight& flight,
-                        const std::optional<std::string>& effect) {
+                        const std::optional<std::string>& effect,
+                        const std::vector<std::string>& references) {
   const Released released;
   need_own_effects(calibration);
   return compared(effect ? compare_with(calibration, flight, *effect)
-                         : compare(calibration, flight));
+                         : compare(calibration, flight, references));
 }
 
 Diagnosed diagnose_on(const Calibration& calibration, const Flight& flight,
@@ -403,7 +404,8 @@ void define_calibration(py::module_& module) {
       .def("rejoin", &rejoin, WithoutGil())
       .def_property_readonly("file", [](const Calibration& self) { return self.flight.file; })
       .def("residuals", &residuals_on, "flight"_a)
-      .def("compare", &compare_flight, "flight"_a, "effect"_a = std::nullopt)
+      .def("compare", &compare_flight, "flight"_a, "effect"_a = std::nullopt,
+           "references"_a = std::vector<std::string>())
       .def("diagnose", &diagnose_on)
       .def("diagnose_stepwise", &diagnose_stepwise_on)
       .def("intervals", &intervals_on)

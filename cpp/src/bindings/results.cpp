@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "sepcal/collinearity.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
@@ -108,6 +109,24 @@ void define_stage_one(py::module_& module) {
 void define_results(py::module_& module) {
   define_parameters(module);
   define_stage_one(module);
+  BoundStruct<CorrelatedPair>(module, "CorrelatedPair", "Two estimates that go together.")
+      .field("first", &CorrelatedPair::first, "")
+      .field("second", &CorrelatedPair::second, "")
+      .field("correlation", &CorrelatedPair::correlation, "")
+      .comparable()
+      .finish();
+
+  BoundStruct<Collinearity>(module, "Collinearity",
+                            "Which estimates a record hardly tells apart (Belsley, Kuh & Welsch).")
+      .field("names", &Collinearity::names, "The k estimates that have a standard error.")
+      .field("pairs", &Collinearity::pairs, "|correlation| above 0.9, strongest first.")
+      .field("condition_indices", &Collinearity::condition_indices,
+             "(k,), from 1 up; above 30 columns hardly differ.")
+      .field("variance_proportions", &Collinearity::variance_proportions,
+             "(k, k): the share of an estimate's variance (a column each) by the direction of each "
+             "condition index (a row each).")
+      .finish();
+
   BoundStruct<FittedModel>(module, "Fit", "The two-stage batch estimate.")
       .field("status", &FittedModel::fit, &Fit::status,
              R"("converged", "not_converged" or "not_identifiable".)")
@@ -162,9 +181,16 @@ void define_results(py::module_& module) {
              "The same with the whole message, as by the apps' --explain.")
       .copied()
       .finish()
+      .def_property_readonly(
+          "collinearity", [](const FittedModel& self) { return find_collinearity(self.fit); },
+          "Which estimates the record hardly tells apart.")
       .def("__getitem__", [](const FittedModel& self, const std::string& name) {
         return find_named(self.fit.parameters, name, "parameter", "the fit has");
       });
+  module.def("confidence_ellipse", [](const FittedModel& self, const std::string& first,
+                                      const std::string& second, double level, int points) {
+    return confidence_ellipse(self.fit, first, second, level, points);
+  });
 }
 
 }  // namespace sepcal::bindings

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/gaps.hpp"
 #include "estimation/sampling.hpp"
 #include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/error.hpp"
@@ -112,12 +113,15 @@ class Start {
   double cost(const VectorXd& theta) const { return innovations_.value(theta).cost; }
 
   std::optional<Fit> fit_output_error() const {
-    for (std::size_t j = 0; j < readings_.size(); ++j) {
-      const auto values = record_.column(model_.tables().outputs[j].name);
-      for (const Segment& segment : record_.segments()) {  // it takes no missing readings
-        const auto part = values.subspan(segment.first, segment.rows());
-        if (!std::ranges::all_of(part, [](double z) { return std::isfinite(z); })) return {};
+    Record record = record_;  // it takes no missing readings
+    for (const Variable& output : model_.tables().outputs) {
+      const auto values = record.column(output.name);
+      if (std::ranges::none_of(values, [](double z) { return std::isnan(z); })) continue;
+      std::vector<double> filled(values.begin(), values.end());
+      for (const Segment& segment : record.segments()) {
+        base::bridge_gaps(std::span(filled).subspan(segment.first, segment.rows()));
       }
+      record.replace(output.name, std::move(filled));
     }
     FitOptions options = options_;
     options.method = FitMethod::output_error;
@@ -126,7 +130,7 @@ class Start {
     options.stage_one_segments.clear();  // the record is what was selected
     options.stage_two_segments.clear();
     try {
-      Fit fitted = fit(model_, record_, options);
+      Fit fitted = fit(model_, record, options);
       if (!fitted.values().allFinite()) return {};
       return fitted;
     } catch (const Error&) {  // as where no trajectory stays finite

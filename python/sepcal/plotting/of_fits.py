@@ -23,6 +23,7 @@ from sepcal.plotting.drawings import (
 )
 from sepcal.reporting import words
 from sepcal.reporting.figures_cause import draw_channels
+from sepcal.reporting.figures_cost import draw_ellipses, draw_landscape
 from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall, steps_of
 from sepcal.reporting.figures_fit import draw_fit
 from sepcal.reporting.figures_noise import draw_noise
@@ -43,17 +44,41 @@ if TYPE_CHECKING:
     from sepcal.stepwise import Stepwise
 
 
-def picture_fit(fit: Fit) -> list[Figure]:
+def picture_fit(fit: Fit, what: str = "correlation") -> list[Figure]:
     """Of any fit: how its estimates go together; of those that have an error."""
+    if what == "ellipses":
+        return draw_ellipses(fit)
+    if what == "stage one":
+        return picture_stage_one(fit)
     known = [i for i, at in enumerate(fit.parameters.values()) if at.standard_error > 0]
     names = [fit.names[i] for i in known]
     return [draw_correlation(names, fit.correlation[np.ix_(known, known)])] if names else []
+
+
+def picture_stage_one(fit: Fit, landscape: _core.CostLandscape | None = None) -> list[Figure]:
+    """Tr[R] over the nonlinear parameters: on a flight, or at the samples that a fit kept."""
+    one = fit.stage_one
+    minima = [minimum.xi2 for minimum in one.minima]
+    estimate = {name: parameter.value for name, parameter in fit.parameters.items()}
+    if landscape is not None and landscape.names:
+        names, units = landscape.names, landscape.units
+        return draw_landscape(names, units, landscape.points, landscape.trace_r, minima, estimate)
+    names = list(one.best)
+    if not names or one.samples.size == 0:
+        raise _core.Error(
+            "stage one sampled nothing: no nonlinear parameter was free within finite bounds, or "
+            "the fit began at a start"
+        )
+    units = [fit.parameters[name].unit for name in names]
+    return draw_landscape(names, units, one.samples, one.trace_r, minima, estimate)
 
 
 def picture_calibration(
     calibration: Calibration, what: str, core: _core.Calibration, flight: Flight
 ) -> list[Figure]:
     """Of a calibration on a flight; `core` is it there."""
+    if what == "stage one":
+        return picture_stage_one(calibration, _core.cost_landscape(core, flight._core))
     comparison = Comparison(core.compare(flight._core))
     figures = _core.gather_figures(core, flight._core)
     if what == "fit":
@@ -103,6 +128,8 @@ def picture_comparison(comparison: Comparison, what: str) -> list[Figure]:
         per = "noise of the fit" if known else "RMSE overall"
         sizes = [known.get(misfit.output, misfit.rmse) for misfit in comparison.overall]
         return [draw_heat_strip(comparison.where, outputs, sizes, per, _title(comparison.where))]
+    if what == "references":
+        return _picture_references(comparison)
     sizes = [misfit.rmse for misfit in comparison.overall]
     drawn = [
         draw_beside_zero(
@@ -112,6 +139,20 @@ def picture_comparison(comparison: Comparison, what: str) -> list[Figure]:
         for i, misfit in enumerate(comparison.overall)
     ]  # fmt: skip
     return name_bands(drawn, "2 RMSE to either side")
+
+
+def _picture_references(comparison: Comparison) -> list[Figure]:
+    """What is calibrated less each reference, over time."""
+    if not comparison.references:
+        raise _core.Error('there is no reference: compare(reference="COLUMN") names one')
+    drawn = [
+        draw_beside_zero(
+            f"difference of {at.calibrated} to {at.reference}", at.unit, at.time, at.difference,
+            np.full(at.time.size, at.rms), [],
+        )
+        for at in comparison.references
+    ]  # fmt: skip
+    return name_bands(drawn, "2 rms to either side")
 
 
 def _title(where: Sequence[_core.Misfit]) -> str:

@@ -41,6 +41,7 @@ class Material:
     diagnosis: Diagnosis
     description: dict[str, Any]  # Calibration.to_dict() of the last
     figures: _core.FlightFigures  # of the last on the flight
+    landscape: _core.CostLandscape  # stage one's, of the last on the flight
     trials: list[Trial]
     notes: list[str]
 
@@ -145,6 +146,7 @@ def gather(
         diagnosis=found,
         description=described[-1],
         figures=_core.gather_figures(last.core, flight._core),
+        landscape=_core.cost_landscape(last.core, flight._core),
         trials=try_candidates(last, flight, comparisons[-1], found, notes, report_progress),
         notes=list(dict.fromkeys([*last.notes, *found.notes, *comparisons[-1].notes, *notes])),
     )

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,12 +17,14 @@ from sepcal.reporting.figures_cause import (
     draw_added_variable,
     draw_channels,
 )
+from sepcal.reporting.figures_cost import draw_ellipses, draw_landscape
 from sepcal.reporting.figures_error import Step, draw_heat_strip, draw_waterfall, steps_of
 from sepcal.reporting.figures_fit import draw_fit
 from sepcal.reporting.gather import Material
 from sepcal.reporting.page import Figure, Grid, Page, Section
 from sepcal.reporting.sections_flight import show_coverage, show_noise
 from sepcal.reporting.thin import say_thinned
+from sepcal.results import Fit
 
 PARAMETERS = 8  # the section's number
 
@@ -37,6 +40,7 @@ def compose(material: Material, file: str) -> Page:
         show_trials(material),
         show_noise(material),
         show_parameters(material),
+        *show_landscape(material),
         show_coverage(material),
         Section(
             "What to fly or log next",
@@ -243,5 +247,37 @@ def show_parameters(material: Material) -> Section:
         tables.list_restated(material.last.restated),
         advice.list_flights(material),
         tables.list_directions(material.last.unobservable, material.last.weak),
+        *show_collinearity(material.last, shared_of_own(material)),
     ]
     return Section("Parameters", lead, blocks)
+
+
+def show_collinearity(fit: Fit, leave_out: Sequence[str] = ()) -> list[str | Figure | Grid]:
+    """Estimates that go together, and the ellipses of those that do so most."""
+    told = tables.list_collinear(fit, leave_out)
+    if not told:
+        return []
+    figures = draw_ellipses(fit, leave_out)
+    lead = html("<p>Each ellipse holds both true values in 95 % of records.</p>")
+    return [told, lead, Grid(figures, 320)] if figures else [told]
+
+
+def show_landscape(material: Material) -> list[Section]:
+    """Stage one's cost; nothing where it had nothing to look for."""
+    last, seen = material.last, material.landscape
+    minima = [minimum.xi2 for minimum in last.stage_one.minima]
+    estimate = {name: parameter.value for name, parameter in last.parameters.items()}
+    figures = draw_landscape(
+        seen.names, seen.units, seen.points, seen.trace_r, minima, estimate
+    ) if seen.names else []  # fmt: skip
+    if not figures:
+        return []
+    several = len(seen.names) > 2
+    lead = (
+        "Tr[R], the sum over outputs of the mean square of what is left, over the nonlinear "
+        "parameters within their bounds; the linear ones are solved at each point"
+        + (", and of each pair the least over all others is shown." if several else ".")
+        + " A second minimum, or a valley in place of a point, means that the flight leaves "
+        "something open."
+    )
+    return [Section("What stage one saw", lead, [Grid(figures, 320)])]

@@ -25,6 +25,7 @@ from sepcal.reporting.words import (
 from sepcal.results import Fit
 
 SHOWN = 10  # candidates; the others are folded away
+COLLINEAR = 10  # pairs that are told
 NEGLIGIBLE = 0.3  # standard errors: a shift that needs no table
 
 
@@ -332,6 +333,30 @@ def list_directions(unobservable: Sequence[Combination], weak: Sequence[Combinat
     if not lines:
         return html("<p>Every combination of the parameters is determined by this flight.</p>")
     return bullets(lines)
+
+
+def list_collinear(fit: Fit, leave_out: Collection[str] = ()) -> Html:
+    """Pairs that are correlated above 0.9, and directions whose condition index is above 10."""
+    found = fit.collinearity
+    lines = [
+        html("<code>{}</code> and <code>{}</code> are correlated by {}.", at.first, at.second,
+             number(at.correlation, 3))
+        for at in found.pairs
+        if not {at.first, at.second} & set(leave_out)
+    ][:COLLINEAR]  # fmt: skip
+    large = [k for k, index in enumerate(found.condition_indices) if index > 10]
+    for k in reversed(large):
+        shares = found.variance_proportions[k]
+        named = [(n, s) for n, s in zip(found.names, shares, strict=True) if s > 0.5]
+        if len(named) > 1 and len(lines) < 2 * COLLINEAR:
+            told = ", ".join(f"{name} {share:.2f}" for name, share in named)
+            lines.append(
+                html("Condition index {}: it makes these shares of the variances: {}.",
+                     number(float(found.condition_indices[k]), 2), told)
+            )  # fmt: skip
+    if not lines:
+        return html("")
+    return html("<h3>Estimates that go together</h3>{}", bullets(lines))
 
 
 def bullets(lines: Sequence[str]) -> Html:

@@ -25,6 +25,7 @@ from sepcal.reporting.figures_error import draw_heat_strip
 from sepcal.reporting.figures_fit import Channel, Run, draw_overlay
 from sepcal.reporting.figures_states import draw_beside_zero, draw_with_band
 from sepcal.reporting.page import Figure, Grid, Page, Section
+from sepcal.reporting.sections import show_collinearity
 from sepcal.reporting.thin import Rows, say_thinned
 from sepcal.smoothing import Smoothed
 
@@ -431,6 +432,7 @@ def show_parameters(flown: Flown) -> Section:
             html("<details><summary>{} initial states</summary>{}</details>", len(initial), folded)
         )
     blocks.append(tables.list_directions(last.unobservable, last.weak))
+    blocks += show_collinearity(last, sorted(initial))
     return Section("Parameters", lead, blocks)
 
 

@@ -111,8 +111,10 @@ struct TwoStepFit {
 TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options);
 
 /// The page of a sensor's comparison. Of another flight than the fitted one the initial states are
-/// estimated anew, all else held; a note says so.
-Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight);
+/// estimated anew, all else held; a note says so. `references` as of compare(); of what
+/// apply_aircraft() gives, `_cal` before `_model`.
+Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight,
+                            const std::vector<std::string>& references = {});
 
 /// What it lacks: of coefficients the usual regressors, of `aero` splines too, and every other
 /// channel of the log; along a trajectory what the sensors and the wind may have. Throws Error for

@@ -58,6 +58,46 @@ struct Disturbance {
   double peak = 0.0;  // the largest in it, with its sign
 };
 
+/// A calibrated quantity against an independent sensor's column of the same log (Sun &
+/// Gebre-Egziabher, Fig. 8). Standard errors allow for a coloured difference; NaN where the
+/// reference doesn't move.
+struct ReferenceMisfit {
+  std::string quantity;    // "airspeed", "alpha", "mx"; "field" for the calibrated field's strength
+  std::string unit;        // "m/s", of all numbers but the scales
+  std::string calibrated;  // what apply calls it: "airspeed_cal_mps"
+  std::string reference;   // what the log calls the other: "TAS_2 [kt]"
+  std::size_t rows = 0;    // in which both are there
+  double bias = 0.0;       // mean of calibrated - reference
+  double bias_error = not_a_number;
+  double rms = 0.0;  // of the difference
+  double sd = 0.0;   // of the difference about its mean
+  double lag_one = not_a_number;
+  // Least squares of calibrated = offset + scale * reference. Noise of the reference makes this
+  // scale smaller; scale_reversed, one over that of the reference on the calibrated, is made larger
+  // by noise of the calibrated.
+  double scale = not_a_number;
+  double scale_error = not_a_number;
+  double offset = not_a_number;
+  double offset_error = not_a_number;
+  double scale_reversed = not_a_number;
+  Eigen::VectorXd time = {};        // [s] of these rows; row numbers where the log has no time
+  Eigen::VectorXd difference = {};  // calibrated - reference; of angles within half a turn
+  Eigen::VectorXd against = {};     // the reference's values
+};
+
+/// How well a model follows an output over all rows; y is what is modelled, by filter error one row
+/// ahead. NaN where the output doesn't move.
+struct OutputValidation {
+  std::string output;
+  double r_squared = not_a_number;  // 1 - sum (z - y)^2 / sum (z - mean z)^2, may be negative
+  double theil = not_a_number;      // rms(z - y) / (rms(z) + rms(y)): 0 exact, 1 the worst
+  // What the mean square of z - y is made of, as shares that sum to one: (mean z - mean y)^2,
+  // (sd z - sd y)^2, 2 (1 - correlation) sd z sd y.
+  double theil_bias = not_a_number;
+  double theil_variance = not_a_number;
+  double theil_covariance = not_a_number;
+};
+
 struct Comparison {
   std::string model;
   FittedFlight flight;  // the flight compared with, not the one fitted
@@ -75,13 +115,19 @@ struct Comparison {
   FitMethod method = FitMethod::output_error;
   std::vector<OutputValue> sigma = {};  // by filter error: rms of the innovations over the filter's
                                         // own standard deviations, 1 where it is right
-  std::vector<Disturbance> disturbances = {};  // by filter error, one a process noise
+  std::vector<Disturbance> disturbances = {};     // by filter error, one a process noise
+  std::vector<OutputValidation> validation = {};  // one an output
+  std::vector<ReferenceMisfit> references = {};   // one a column that was asked for
 };
 
 /// Runs of one label are taken together; a flight with fewer than two labels is cut into ten spans
 /// of equal length. Channels are all numeric columns of the log and what the probe derives from
-/// them, but for its outputs and what is constant. Throws Error for bad input, as calibrate() does.
-Comparison compare(const Calibration& calibration, const Flight& flight);
+/// them, but for its outputs and what is constant. `references`: columns of independent sensors,
+/// which what apply() calibrates is set against; "airspeed_kt=TAS 2" says what a column is that its
+/// name doesn't tell, as a log's map does. Throws Error for bad input, as calibrate() does, and for
+/// a reference that is not there, in no known unit or of no quantity that is calibrated.
+Comparison compare(const Calibration& calibration, const Flight& flight,
+                   const std::vector<std::string>& references = {});
 
 /// Where the model would fail with `effect` added, for a look: no history, nothing promised. Throws
 /// Error as add() does.
@@ -90,8 +136,11 @@ Comparison compare_with(const Calibration& base, const Flight& flight, const std
 /// The JSON object: model, inputs, status, message, rmse {output}, residual {output: {lag_one}},
 /// where [{segment, output, rows, rmse, mean, lag_one}], channels [{driver, output, share_line,
 /// share_smooth, slope, slope_error, unit}], windows [{first_s, last_s, rows, rmse {output}, mean
-/// {output}}], by filter error innovation {output: {lag_one, sigma}} and disturbances [{name, size,
-/// unit, share_beyond, rows, first_s, last_s, peak}].
+/// {output}}], validation {output: {r_squared, theil, theil_bias, theil_variance,
+/// theil_covariance}}, references [{quantity, unit, calibrated, reference, rows, bias, bias_error,
+/// rms, sd, lag_one, scale, scale_error, offset, offset_error, scale_reversed, time_s,
+/// difference}] where there are some, by filter error innovation {output: {lag_one, sigma}} and
+/// disturbances [{name, size, unit, share_beyond, rows, first_s, last_s, peak}].
 std::string to_json(const Comparison& comparison);
 
 /// The page that the apps print: the error by maneuver, whether it is noise, the channels that

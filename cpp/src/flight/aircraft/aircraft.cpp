@@ -16,8 +16,10 @@
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/aircraft/trajectory_effects.hpp"
 #include "flight/files/flight_digest.hpp"
+#include "flight/verbs/reference_comparison.hpp"
 #include "flight/verbs/residual_comparison.hpp"
 #include "sepcal/aircraft/two_step.hpp"
+#include "sepcal/detail/flight/read_as.hpp"
 #include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
 
@@ -153,7 +155,7 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   first.model = AircraftModel::path;
   first.calibration.effects.clear();
   // As one with a state, which the path has.
-  ProbeRecord prepared = prepare(flight, AircraftModel::six_dof, second.calibration.log);
+  ProbeRecord prepared = prepare(flight, AircraftModel::six_dof, second.calibration.log, false);
   TwoStep steps = within(flight, [&] {
     return two_step(prepared.record, geometry_of(second),
                     {.equations = equations_of(second),
@@ -209,7 +211,8 @@ AircraftFit add_to_aircraft(const AircraftFit& base, const Flight& flight,
   return next;
 }
 
-Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
+Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight,
+                            const std::vector<std::string>& references) {
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
   base::ThreadPool pool(fitted.options.calibration.fit.threads);
   const Fit at = fit_on(flight, fitted, laid);
@@ -222,6 +225,13 @@ Comparison compare_aircraft(const AircraftFit& fitted, const Flight& flight) {
                                channels_beside(laid, innovations.e), flight, fitted.fit, pool);
   if (by_filter) judge_by_filter(result, innovations, fitted, at, laid);
   result.model = to_string(fitted.options.model);
+  if (!references.empty()) {
+    std::vector<std::string> told_by_compare;
+    result.references =
+        verbs::compare_references(references, apply_aircraft(fitted, flight, {}, told_by_compare),
+                                  {read_as(flight, fitted.options.calibration.log).flight, flight},
+                                  {.record = laid.record, .flight_rows = laid.flight_rows});
+  }
   result.notes = std::move(laid.notes);
   return result;
 }
@@ -266,7 +276,7 @@ Fit aircraft_log::fit_on(const Flight& flight, const AircraftFit& fitted, LaidAi
     options.process_noise = fitted.fit.process_noise();
     for (const OutputValue& noise : fitted.fit.noise) options.noise[noise.name] = noise.value;
   }
-  return fit(*laid.model, laid.record, options);
+  return fit(*laid.model, readings_of(laid), options);
 }
 
 }  // namespace sepcal

@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "base/columns.hpp"
+#include "base/gaps.hpp"
+#include "base/name_list.hpp"
 #include "flight/aircraft/believed_rows.hpp"
+#include "flight/files/headers.hpp"
 #include "flight/probes/air_columns.hpp"
 #include "flight/probes/joined_quantities.hpp"
 #include "numerics/interpolated_column.hpp"
@@ -40,6 +44,78 @@ void need_air(RecordBuilder& builder, const Flight& flight) {
   } else {
     probes::need_density(builder, flight, "rho_kgpm3, or temp_k and ps_pa, or qbar_pa");
   }
+}
+
+/// A flight in the plane of symmetry: of what lies across it, zeros where a log has nothing.
+Flight within_symmetry(const Flight& flight, std::vector<std::string>& notes) {
+  const RecordBuilder logged(flight, quantities_of(AircraftModel::longitudinal).list, {});
+  Flight whole = flight;
+  std::vector<std::string> added;
+  const auto add = [&](const char* name, const char* header) {
+    if (logged.has({name})) return;
+    whole.add(header, std::vector<double>(flight.rows(), 0.0));
+    added.emplace_back(name);
+  };
+  add("ay", "ay_mps2");
+  add("p", "p_radps");
+  add("r", "r_radps");
+  add("beta", "beta_rad");
+  add("roll", "roll_rad");
+  if (added.empty()) return flight;
+  if (logged.has({"qdot"})) {
+    add("pdot", "pdot_radps2");
+    add("rdot", "rdot_radps2");
+  }
+  notes.push_back(
+      fmt::format("{}: no column for {}, taken as zero, as in flight in the plane of symmetry",
+                  flight.name(), base::list_names(added)));
+  return whole;
+}
+
+/// Rows of the flight in which an output has no reading.
+struct EmptyCells {
+  std::string name;
+  std::vector<bool> is_empty;
+};
+
+/// Of outputs that a filter follows, those with empty cells, which then have straight lines there:
+/// states that are read, and where a fit starts, take these. A yaw that is logged within a turn has
+/// none.
+std::vector<EmptyCells> bridge_outputs(Flight& flight, bool is_path,
+                                       std::vector<std::string>& notes) {
+  constexpr std::size_t fewest = 10;
+  static constexpr std::array outputs{"airspeed", "alpha", "beta", "roll", "pitch", "vn", "ve",
+                                      "vd",       "ax",    "ay",   "az",   "p",     "q",  "r"};
+  constexpr std::size_t inertial = 6;  // which a path is integrated from
+  std::vector<EmptyCells> bridged;
+  std::vector<std::string> told;
+  for (const char* name : std::span(outputs).first(outputs.size() - (is_path ? inertial : 0))) {
+    const auto quantity = std::ranges::find(quantities_of(AircraftModel::path).list,
+                                            std::string_view(name), &probes::ProbeQuantity::name);
+    const auto logged = files::find_quantity(flight, name, quantity->kind);
+    if (!logged) continue;
+    const std::span<const double> read = logged->column->values;
+    EmptyCells cells{name, std::vector<bool>(read.size())};
+    std::size_t there = 0;
+    for (std::size_t row = 0; row < read.size(); ++row) {
+      cells.is_empty[row] = std::isnan(read[row]);
+      if (!cells.is_empty[row]) ++there;
+    }
+    const auto& text = logged->column->first_text;
+    if (there == read.size() || there < fewest || (text && !text->text.empty())) continue;
+    std::vector<double> values(read.begin(), read.end());
+    base::bridge_gaps(values);
+    told.push_back(fmt::format("{} in {}", name, there));
+    flight.replace(logged->column->header, std::move(values));
+    bridged.push_back(std::move(cells));
+  }
+  if (!told.empty()) {
+    notes.push_back(
+        fmt::format("{}: of {} rows there are readings of {}; the likelihood takes "
+                    "those",
+                    flight.name(), flight.rows(), base::list_names(told)));
+  }
+  return bridged;
 }
 
 /// The record with roll and yaw going on where they are logged within a turn: a state that is
@@ -106,10 +182,31 @@ probes::ModelQuantities quantities_of(AircraftModel model) {
   return {quantities, by_row ? probes::LooksAt::coefficients : probes::LooksAt::trajectory};
 }
 
-ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log) {
+bool has_gaps(const Flight& logged, AircraftModel model, const LogChoice& log) {
+  if (log.drop_invalid) return false;
+  Flight flight = probes::read_for(quantities_of(model), logged, log).flight;
+  std::vector<std::string> notes;
+  return !bridge_outputs(flight, model == AircraftModel::path, notes).empty();
+}
+
+bool is_symmetric(AircraftModel model, const std::vector<AeroEquation>& equations) {
+  if (model != AircraftModel::aero) return model == AircraftModel::longitudinal;
+  return !equations.empty() && std::ranges::all_of(equations, [](const AeroEquation& equation) {
+    return equation.coefficient == "CX" || equation.coefficient == "CZ" ||
+           equation.coefficient == "Cm";
+  });
+}
+
+ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log, bool symmetric,
+                    std::vector<GappedOutput>* gaps) {
   const ReadFlight read = probes::read_for(quantities_of(model), logged, log);
   const BelievedFlight believed = believe(read.flight, model, log);
-  const Flight& flight = believed.flight;
+  std::vector<std::string> notes;
+  Flight flight = symmetric ? within_symmetry(believed.flight, notes) : believed.flight;
+  const std::vector<EmptyCells> bridged =
+      gaps == nullptr || log.drop_invalid
+          ? std::vector<EmptyCells>()
+          : bridge_outputs(flight, model == AircraftModel::path, notes);
   RecordBuilder builder(flight, quantities_of(model).list, log);
   refuse_load_factor(builder, flight);
   builder.keep([&](std::size_t row) { return !std::ranges::binary_search(believed.left_out, row); },
@@ -133,8 +230,17 @@ ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& 
   probes::offer_temperature(builder);
   ProbeRecord prepared = builder.finish();
   prepared.record = without_jumps(prepared.record);
-  for (const auto* notes : {&believed.notes, &read.notes}) {
-    prepared.notes.insert(prepared.notes.begin(), notes->begin(), notes->end());
+  for (const EmptyCells& one : bridged) {
+    const auto column = prepared.record.column(one.name);
+    GappedOutput output{one.name, {column.begin(), column.end()}};
+    for (std::size_t row = 0; row < output.values.size(); ++row) {
+      if (one.is_empty[prepared.flight_rows[row]]) output.values[row] = not_a_number;
+    }
+    gaps->push_back(std::move(output));
+  }
+  for (const std::vector<std::string>* told :
+       {&std::as_const(notes), &believed.notes, &read.notes}) {
+    prepared.notes.insert(prepared.notes.begin(), told->begin(), told->end());
   }
   return prepared;
 }

@@ -57,6 +57,14 @@ Fit shown(const AircraftFit& fitted, Detail detail) {
   Fit fit = fitted.fit;
   const std::vector<std::string>& initial = fitted.initial_states;
   if (detail == Detail::explained || initial.size() <= many) return fit;
+  std::vector<Eigen::Index> kept;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const bool hidden = std::ranges::find(initial, fit.parameters[k].name) != initial.end();
+    if (!hidden) kept.push_back(static_cast<Eigen::Index>(k));
+  }
+  if (fit.correlation.rows() == static_cast<Eigen::Index>(fit.parameters.size())) {
+    fit.correlation = fitted.fit.correlation(kept, kept);
+  }
   std::erase_if(fit.parameters, [&](const Parameter& parameter) {
     return std::ranges::find(initial, parameter.name) != initial.end();
   });

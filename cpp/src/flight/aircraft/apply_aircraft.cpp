@@ -138,7 +138,7 @@ SmoothedRecord aircraft_log::smooth_laid(const AircraftFit& fitted, const Fit& f
                                          const ProcessNoise& process_noise) {
   SmoothingNoise noise{.process = process_noise};
   for (const OutputValue& output : fitted.fit.noise) noise.outputs[output.name] = output.value;
-  return smooth(state_model_of(laid, fitted), laid.record, fit.by_name(), noise,
+  return smooth(state_model_of(laid, fitted), readings_of(laid), fit.by_name(), noise,
                 errors_without_starts(fitted));
 }
 

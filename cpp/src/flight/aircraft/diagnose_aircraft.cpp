@@ -94,6 +94,7 @@ Eigen::MatrixXd added_outputs(const AircraftFit& fitted, const Flight& flight,
   AircraftOptions options = options_on(fitted, flight);
   options.calibration.effects.push_back({.name = injected.name});
   LaidAircraft with = aircraft_log::lay(flight, options);
+  need_every_reading(with, "diagnose");
   verbs::check_new(with.effects);
   injection.effect = with.effects.back().name;
   const bool is_along = acts_along(fitted.options.model, injection.effect);
@@ -111,6 +112,7 @@ FlightDiagnosis diagnose_aircraft(const AircraftFit& base, const Flight& flight,
   std::vector<std::string> left_out;
   const AircraftFit fitted = without_suspects(base, flight, left_out);
   LaidAircraft laid = lay(flight, options_on(fitted, flight));
+  need_every_reading(laid, "diagnose");
   return within(flight,
                 [&] { return diagnose_laid(fitted, flight, laid, std::move(left_out), options); });
 }
@@ -122,6 +124,7 @@ FlightDiagnosis diagnose_aircraft_with(const SizedEffect& injected, const Aircra
   AircraftFit fitted = without_suspects(base, flight, left_out);
   Injection injection;
   LaidAircraft laid = aircraft_log::lay(flight, options_on(fitted, flight));
+  need_every_reading(laid, "diagnose");
   return within(flight, [&] {
     const Fit at = fit_on(flight, fitted, laid);
     const Eigen::MatrixXd added = added_outputs(fitted, flight, at.by_name(), injected, injection);

@@ -75,7 +75,7 @@ void find_stretch(Disturbance& disturbance, const VectorXd& scaled,
 
 FlightInnovations innovations_on(const LaidAircraft& laid, const Fit& at) {
   const InnovationModel::Innovations all =
-      laid.model->innovations(laid.record)->innovations(estimation::theta_of(at));
+      laid.model->innovations(readings_of(laid))->innovations(estimation::theta_of(at));
   const auto rows = static_cast<Index>(laid.record.rows());
   FlightInnovations chosen{MatrixXd(rows, all.e.cols()), MatrixXd(rows, all.e.cols())};
   Index row = 0;
@@ -101,6 +101,12 @@ void judge_by_filter(Comparison& result, const FlightInnovations& innovations,
     result.sigma.push_back(
         {outputs[j].name, std::sqrt(square / static_cast<double>(there.count()))});
   }
+  if (at.process_noise().empty()) {  // held at none: the states are the trajectory's own
+    for (const NoiseSize& size : fitted.fit.noise_sizes) {
+      if (size.name.starts_with("q_")) result.disturbances.push_back({.noise = size});
+    }
+    return;
+  }
   const StateBlockModel& model = state_model_of(laid, fitted);
   SmoothingNoise noise{.process = at.process_noise()};
   for (const OutputValue& output : at.noise) noise.outputs[output.name] = output.value;
@@ -108,7 +114,7 @@ void judge_by_filter(Comparison& result, const FlightInnovations& innovations,
   for (const int i : model.plan().integrated()) {
     noise.start[model.plan().model().states[static_cast<std::size_t>(i)].name] = certain;
   }
-  const SmoothedRecord smoothed = smooth(model, laid.record, at.by_name(), noise);
+  const SmoothedRecord smoothed = smooth(model, readings_of(laid), at.by_name(), noise);
   const std::span<const Variable> noises = model.process_noises();
   VectorXd densities = VectorXd::Zero(static_cast<Index>(noises.size()));
   for (std::size_t k = 0; k < noises.size(); ++k) {

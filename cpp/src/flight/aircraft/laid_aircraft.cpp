@@ -171,6 +171,22 @@ Fit fit_over_band(LaidAircraft& laid, const Band& band, const FitOptions& option
   return found;
 }
 
+/// By filter error with the gaps of outputs, of which another fit is told where they stop it.
+ProbeRecord prepare_for(const Flight& flight, const AircraftOptions& options, LaidAircraft& laid) {
+  const LogChoice& log = options.calibration.log;
+  const bool symmetric = is_symmetric(options.model, laid.equations);
+  const bool has_state = options.model != AircraftModel::aero && !options.band;
+  if (has_state && options.calibration.fit.method == FitMethod::filter_error) {
+    return prepare(flight, options.model, log, symmetric, &laid.gaps);
+  }
+  try {
+    return prepare(flight, options.model, log, symmetric);
+  } catch (const Error& error) {
+    if (!has_state || !has_gaps(flight, options.model, log)) throw;
+    throw_within("", error, "; filter error takes the readings that are there");
+  }
+}
+
 /// Of the whole flight, or of its first rows.
 LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
                       std::optional<std::size_t> rows) {
@@ -181,7 +197,7 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
   laid.effects = options.calibration.effects;
   laid.band = options.band;
   laid.equations = equations_of(options);
-  ProbeRecord prepared = prepare(flight, options.model, options.calibration.log);
+  ProbeRecord prepared = prepare_for(flight, options, laid);
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
   laid.notes = std::move(prepared.notes);
   laid.flight_rows = std::move(prepared.flight_rows);
@@ -205,6 +221,11 @@ LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
       if (laid.band) hold_bent(options, laid);
     }
   });
+  std::erase_if(laid.gaps, [&](const GappedOutput& one) {
+    const std::vector<Variable>& outputs = laid.model->tables().outputs;
+    return std::ranges::find(outputs, one.name, &Variable::name) == outputs.end();
+  });
+  for (GappedOutput& one : laid.gaps) one.values.resize(laid.record.length());  // of first rows
   return laid;
 }
 
@@ -246,9 +267,25 @@ std::vector<EffectSetting> effects_along(const AircraftOptions& options,
 
 Fit fit_laid(LaidAircraft& laid, const FitOptions& options) {
   if (laid.band) return fit_over_band(laid, *laid.band, options);
-  if (laid.along.empty()) return fit(*laid.model, laid.record, options);
-  return estimation::fit_with_steps(*laid.model, *laid.base, laid.along, laid.effects, laid.record,
+  const Record readings = readings_of(laid);
+  if (laid.along.empty()) return fit(*laid.model, readings, options);
+  return estimation::fit_with_steps(*laid.model, *laid.base, laid.along, laid.effects, readings,
                                     options);
+}
+
+Record readings_of(const LaidAircraft& laid) {
+  if (laid.gaps.empty()) return laid.record;
+  base::Columns columns(laid.record);
+  for (const GappedOutput& one : laid.gaps) columns.set(one.name, one.values);
+  return columns.record();
+}
+
+void need_every_reading(const LaidAircraft& laid, std::string_view verb) {
+  if (laid.gaps.empty()) return;
+  throw Error(
+      fmt::format("{} takes a reading of every output in every row, and {} has gaps; leave it out "
+                  "of the fit (--outputs), or fit with --drop-invalid",
+                  verb, laid.gaps.front().name));
 }
 
 Record seen_by_model(const LaidAircraft& laid, const Fit& fit) {

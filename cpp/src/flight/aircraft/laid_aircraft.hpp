@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "flight/aircraft/aircraft_columns.hpp"
 #include "sepcal/detail/block_model.hpp"
 #include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
@@ -32,7 +33,14 @@ struct LaidAircraft {
   std::vector<std::string> notes;
   std::string warning;
   std::vector<std::size_t> flight_rows;  // of the record's rows
+  std::vector<GappedOutput> gaps = {};   // of the model; the record has straight lines in them
 };
+
+/// The record as the likelihood takes it: NaN where an output has no reading.
+Record readings_of(const LaidAircraft& laid);
+
+/// Throws Error where an output has gaps, for a verb that takes every row: "diagnose".
+void need_every_reading(const LaidAircraft& laid, std::string_view verb);
 
 /// Those of the effects that act along the trajectory.
 std::vector<EffectSetting> effects_along(const AircraftOptions& options,

@@ -35,13 +35,13 @@ StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const Laid
   }
   if (!how.how.noise.empty()) options.calibration.fit.noise = how.how.noise;
   if (laid.initial_states.empty()) {
-    return start_from_rows(*laid.model, laid.record, rows, options.calibration.fit);
+    return start_from_rows(*laid.model, readings_of(laid), rows, options.calibration.fit);
   }
   for (const std::string& name : fitted.initial_states) {  // of other segments than the first rows'
     options.calibration.fit.start.erase(name);
   }
   const LaidAircraft batch = lay_first_rows(flight, options, rows);
-  return start_from_rows(*batch.model, laid.record, rows, batch.fit);
+  return start_from_rows(*batch.model, readings_of(laid), rows, batch.fit);
 }
 
 /// Names with their units: states first, then parameters.
@@ -79,7 +79,7 @@ TrackedFlight track_aircraft(const AircraftFit& fitted, const Flight& flight,
           laid.along.front().name));
     }
     const StreamStart start = start_of(fitted, flight, laid, options);
-    TrackedFlight tracked{.track = track(*laid.model, laid.record, start, options.how),
+    TrackedFlight tracked{.track = track(*laid.model, readings_of(laid), start, options.how),
                           .table = {},
                           .outputs = laid.model->tables().outputs,
                           .file = flight.name(),

@@ -198,6 +198,7 @@ Promise promise_along(const AircraftFit& fitted, const Flight& flight, const Air
   if (fitted.options.model == AircraftModel::aero || fitted.options.band) return {};
   try {
     LaidAircraft laid = lay(flight, options_on(fitted, flight));
+    need_every_reading(laid, "a promise");
     const Fit fit = fit_on(flight, fitted, laid);
     const DiagnosedFit along = diagnosed_trajectory(fitted, fit, laid, flight, {effect});
     return promise(along, effect, next.fit.by_name(), fitted.options.calibration.fit.threads);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+
 #include "flight/json/result_json.hpp"
 #include "sepcal/flight/comparison.hpp"
 
@@ -26,6 +28,13 @@ std::string to_json(const Comparison& comparison) {
   root["where"] = write_list(comparison.where);
   root["channels"] = write_list(comparison.channels);
   root["windows"] = write_list(comparison.windows);
+  root["validation"] = write_by_name(comparison.validation, &OutputValidation::output);
+  for (const ReferenceMisfit& one : comparison.references) {
+    Json told = write_fields(one);
+    told["time_s"] = std::vector<double>(one.time.begin(), one.time.end());
+    told["difference"] = std::vector<double>(one.difference.begin(), one.difference.end());
+    root["references"].push_back(std::move(told));
+  }
   if (comparison.method == FitMethod::filter_error) {
     root["innovation"] = Json::object();
     for (std::size_t j = 0; j < comparison.sigma.size(); ++j) {

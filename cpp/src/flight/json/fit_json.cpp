@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/collinear_directions.hpp"
 #include "flight/json/findings_json.hpp"
 #include "flight/json/result_json.hpp"
+#include "sepcal/collinearity.hpp"
 
 namespace sepcal::json {
 namespace {
@@ -87,6 +89,23 @@ void read_correlation(const Json& correlation, Fit& fit) {
     fit.covariance_blocks(k, k) = std::pow(parameter.standard_error_blocks, 2);
   }
   fit.covariance = errors.asDiagonal() * fit.correlation * errors.asDiagonal();
+}
+
+/// What follows of the correlation; a reader finds it again.
+Json write_collinearity(const Fit& fit) {
+  const Collinearity found = find_collinearity(fit);
+  Json pairs = Json::array();
+  for (const CorrelatedPair& pair : found.pairs) {
+    pairs.push_back({{"first", pair.first},
+                     {"second", pair.second},
+                     {"correlation", number(pair.correlation)}});
+  }
+  Json directions = Json::array();
+  for (const estimation::CollinearDirection& one : estimation::collinear_directions(found)) {
+    directions.push_back({{"condition_index", number(one.condition_index)},
+                          {"variance_proportions", by_name(one.proportions)}});
+  }
+  return {{"pairs", pairs}, {"directions", directions}};
 }
 
 // --- filter error
@@ -173,6 +192,7 @@ void write_rest(const Fit& fit, const FitOptions& options, Json& root) {
       fit.correlation.rows() == n ? fit.correlation : Eigen::MatrixXd::Constant(n, n, undefined);
   root["correlation"] = {{"names", estimated_names(fit)},
                          {"matrix", matrix(correlation(estimated, estimated))}};
+  root["collinearity"] = write_collinearity(fit);
   root["unobservable"] = write_combinations(fit.identifiability.unobservable);
   root["weak"] = write_combinations(fit.identifiability.weak);
   root["cost"] = number(fit.cost);

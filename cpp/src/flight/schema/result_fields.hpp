@@ -76,6 +76,51 @@ struct ResultFields<Window> {
 };
 
 template <>
+struct ResultFields<OutputValidation> {
+  template <class Row>
+  static void each(const Row& row) {
+    row("output", &OutputValidation::output, "", Told::in_code);
+    row("r_squared", &OutputValidation::r_squared,
+        "1 - sum (z - model)^2 / sum (z - mean z)^2; may be negative.");
+    row("theil", &OutputValidation::theil,
+        "Theil's inequality coefficient, rms(z - model) / (rms(z) + rms(model)): 0 exact, 1 "
+        "worst.");
+    row("theil_bias", &OutputValidation::theil_bias,
+        "Share of the mean square by the difference of the means.");
+    row("theil_variance", &OutputValidation::theil_variance,
+        "By the difference of the standard deviations.");
+    row("theil_covariance", &OutputValidation::theil_covariance,
+        "The rest, by what doesn't correlate: near 1 of a good model.");
+  }
+};
+
+template <>
+struct ResultFields<ReferenceMisfit> {
+  template <class Row>
+  static void each(const Row& row) {
+    row("quantity", &ReferenceMisfit::quantity,
+        R"("airspeed", "alpha", "mx"; "field": the calibrated field's strength.)");
+    row("unit", &ReferenceMisfit::unit, "Of all numbers but the scales.");
+    row("calibrated", &ReferenceMisfit::calibrated, R"(What apply calls it: "airspeed_cal_mps".)");
+    row("reference", &ReferenceMisfit::reference, "What the log calls the other.");
+    row("rows", &ReferenceMisfit::rows, "In which both are there.");
+    row("bias", &ReferenceMisfit::bias, "Mean of calibrated - reference.");
+    row("bias_error", &ReferenceMisfit::bias_error,
+        "Its standard error, which allows for a coloured difference.");
+    row("rms", &ReferenceMisfit::rms, "Of the difference.");
+    row("sd", &ReferenceMisfit::sd, "Of the difference about its mean.");
+    row("lag_one", &ReferenceMisfit::lag_one, "Correlation of neighbouring differences.");
+    row("scale", &ReferenceMisfit::scale, "Of calibrated = offset + scale * reference.");
+    row("scale_error", &ReferenceMisfit::scale_error, "As bias_error.");
+    row("offset", &ReferenceMisfit::offset, "");
+    row("offset_error", &ReferenceMisfit::offset_error, "As bias_error.");
+    row("scale_reversed", &ReferenceMisfit::scale_reversed,
+        "One over the scale of the reference on the calibrated; noise of either makes them "
+        "differ.");
+  }
+};
+
+template <>
 struct ResultFields<Parameter> {
   template <class Row>
   static void each(const Row& row) {

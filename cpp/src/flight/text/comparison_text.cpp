@@ -81,7 +81,9 @@ std::string to_text(const Comparison& comparison, Detail detail) {
   for (const Misfit& misfit : comparison.overall) {
     text += page("{}: {}\n", misfit.output, verdict_on_noise(misfit));
   }
+  text += validation_table(comparison);
   text += filter_lines(comparison);
+  text += reference_table(comparison);
   text += page("\n{}\n{}", channel_table(comparison), window_table(comparison));
   text += comparison.method == FitMethod::filter_error
               ? Page("\nrmse and mean of innovations, which the readings before don't foretell, in")

@@ -2,11 +2,13 @@
 #include "flight/text/failure_tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
 
 #include "base/page.hpp"
 #include "base/short_number.hpp"
+#include "flight/text/number_text.hpp"
 
 namespace sepcal::text {
 
@@ -62,6 +64,42 @@ Page window_table(const Comparison& comparison) {
     for (const OutputValue& mean : window.mean) text += page(" {:>11.4g}", mean.value);
     text += "\n";
   }
+  return text;
+}
+
+Page validation_table(const Comparison& comparison) {
+  Page text = page("\n{:<8} {:>9} {:>9}  {:>8} {:>8} {:>10}\n", "output", "R^2", "Theil U", "bias",
+                   "variance", "covariance");
+  const auto percent = [](double share) { return defined(100.0 * share, "{:.1f} %"); };
+  for (const OutputValidation& one : comparison.validation) {
+    text +=
+        page("{:<8} {:>9} {:>9}  {:>8} {:>8} {:>10}\n", one.output,
+             defined(one.r_squared, "{:.4f}"), defined(one.theil, "{:.4f}"),
+             percent(one.theil_bias), percent(one.theil_variance), percent(one.theil_covariance));
+  }
+  return text +
+         "Theil U: 0 exact, 1 the worst; by the means' difference, by that of the standard "
+         "deviations, by the rest\n";
+}
+
+Page reference_table(const Comparison& comparison) {
+  Page text;
+  for (const ReferenceMisfit& one : comparison.references) {
+    text += page("\n{} against {}: {} rows\n", one.calibrated, one.reference, one.rows);
+    text +=
+        page("  difference  bias {:.4g} +- {:.2g}, rms {:.4g}, sd {:.4g} {}, lag one {}\n",
+             one.bias, one.bias_error, one.rms, one.sd, one.unit, defined(one.lag_one, "{:.3f}"));
+    if (std::isnan(one.scale)) {
+      text += "  the reference doesn't move: no scale\n";
+      continue;
+    }
+    text += page(
+        "  calibrated = offset + scale * reference:  scale {:.5f} +- {:.2g}, offset {:.4g} +- "
+        "{:.2g} {}; the other way round scale {}\n",
+        one.scale, one.scale_error, one.offset, one.offset_error, one.unit,
+        defined(one.scale_reversed, "{:.5f}"));
+  }
+  if (!text.empty()) text += "+- allows for a coloured difference\n";
   return text;
 }
 

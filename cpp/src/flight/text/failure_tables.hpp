@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a model fails, beside by maneuver: against which channel, and when.
+// Where a model fails, beside by maneuver: against which channel, when, and against references; and
+// how well it follows as a whole.
 #pragma once
 
 #include "base/page.hpp"
@@ -12,5 +13,11 @@ base::Page channel_table(const Comparison& comparison);
 
 /// The worst windows, each with the error and the mean of every output.
 base::Page window_table(const Comparison& comparison);
+
+/// R^2 and Theil's coefficient of every output.
+base::Page validation_table(const Comparison& comparison);
+
+/// What is calibrated against references; empty where none were asked for.
+base::Page reference_table(const Comparison& comparison);
 
 }  // namespace sepcal::text

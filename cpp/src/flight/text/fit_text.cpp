@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "base/page.hpp"
+#include "estimation/collinear_directions.hpp"
 #include "flight/text/number_text.hpp"
 #include "flight/text/status_text.hpp"
+#include "sepcal/collinearity.hpp"
 
 namespace sepcal {
 
@@ -111,6 +113,32 @@ Page noise_table(const Fit& fit, const FitOptions& options) {
   return text + page("raises 2 ln L by {:.3g}\n", rise);
 }
 
+/// Pairs of estimates that go together; explained, the directions that are hardly determined too.
+Page collinearity_lines(const Fit& fit, Detail detail) {
+  const Collinearity found = find_collinearity(fit);
+  constexpr std::size_t most = 5;
+  const std::size_t shown =
+      detail == Detail::brief ? std::min(most, found.pairs.size()) : found.pairs.size();
+  Page text;
+  for (std::size_t i = 0; i < shown; ++i) {
+    text += i == 0 ? Page("\ncorrelation above 0.9: ") : Page(", ");
+    text += page("{} and {} {:.3f}", found.pairs[i].first, found.pairs[i].second,
+                 found.pairs[i].correlation);
+  }
+  if (shown < found.pairs.size()) text += page(" and {} more", found.pairs.size() - shown);
+  if (!text.empty()) text += "\n";
+  if (detail == Detail::brief) return text;
+  for (const estimation::CollinearDirection& one : estimation::collinear_directions(found)) {
+    text += page("condition index {:.0f}, share of each variance:", one.condition_index);
+    for (const OutputValue& share : one.proportions) {
+      constexpr double worth_a_word = 0.1;
+      if (share.value >= worth_a_word) text += page(" {} {:.2f}", share.name, share.value);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 Page text::fit_table(const Fit& fit, const CalibrationOptions& options,
@@ -141,6 +169,7 @@ Page text::fit_table(const Fit& fit, const CalibrationOptions& options,
     add_row(quantity.name, page("{:.6g}", quantity.value), error_columns(quantity, detail),
             quantity.unit, "derived");
   }
+  text += collinearity_lines(fit, detail);
   text += output_table(fit);
   if (fit.method == FitMethod::filter_error) {
     return text + noise_table(fit, options.fit) +

@@ -14,29 +14,43 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-/// Sums of one output over stretches; lag-one correlation is about the common mean.
+/// The values of a stretch that are there.
+std::vector<double> present(const MatrixXd& residuals, Index output, const Segment& stretch) {
+  std::vector<double> values;
+  for (std::size_t row = stretch.first; row < stretch.last; ++row) {
+    const double value = residuals(static_cast<Index>(row), output);
+    if (!std::isnan(value)) values.push_back(value);
+  }
+  return values;
+}
+
+/// Sums of one output over stretches; lag-one correlation is about the common mean, of readings
+/// that follow each other.
 Misfit measure(const base::Part& part, const MatrixXd& residuals, Index output,
                const Variable& quantity) {
   Misfit misfit{.segment = part.name, .output = quantity.name, .unit = quantity.unit};
-  const auto r = residuals.col(output);
+  std::vector<std::vector<double>> stretches;
   double sum = 0.0;
   double square = 0.0;
   for (const Segment& stretch : part.stretches) {
-    const auto values =
-        r.segment(static_cast<Index>(stretch.first), static_cast<Index>(stretch.rows()));
+    stretches.push_back(present(residuals, output, stretch));
+    const Eigen::Map<const VectorXd> values(stretches.back().data(),
+                                            static_cast<Index>(stretches.back().size()));
     sum += values.sum();
     square += values.squaredNorm();
-    misfit.rows += stretch.rows();
+    misfit.rows += stretches.back().size();
   }
   const auto rows = static_cast<double>(misfit.rows);
   misfit.mean = sum / rows;
   misfit.rmse = std::sqrt(square / rows);
   double product = 0.0;
-  for (const Segment& stretch : part.stretches) {
-    const auto n = static_cast<Index>(stretch.rows());
+  for (const std::vector<double>& stretch : stretches) {
+    if (stretch.empty()) continue;
+    const auto n = static_cast<Index>(stretch.size());
     const auto centred =
-        (r.segment(static_cast<Index>(stretch.first), n).array() - misfit.mean).eval();
+        (Eigen::Map<const VectorXd>(stretch.data(), n).array() - misfit.mean).eval();
     product += (centred.head(n - 1) * centred.tail(n - 1)).sum();
   }
   const double variance = square - rows * misfit.mean * misfit.mean;

@@ -12,8 +12,8 @@
 
 namespace sepcal::verbs {
 
-/// `residuals`: rows x n_z, of the rows in the record's segments, one after another. One misfit an
-/// output, over all rows.
+/// `residuals`: rows x n_z, of the rows in the record's segments, one after another; NaN where
+/// there is no reading. One misfit an output, over all rows.
 std::vector<Misfit> measure_whole(const Record& record, const std::vector<Variable>& outputs,
                                   const Eigen::MatrixXd& residuals);
 

@@ -100,6 +100,7 @@ VectorXd spread_of(const MatrixXd& X, const VectorXd& residual, const std::vecto
 }  // namespace
 
 std::vector<ChannelMisfit> compare_channels(const Record& record, const Tables& tables,
+                                            const std::vector<std::string>& names,
                                             const MatrixXd& residuals, base::ThreadPool& pool) {
   if (residuals.rows() < fewest_rows) return {};
   const std::vector<Channel> channels = read_channels(record, tables);
@@ -131,13 +132,15 @@ std::vector<ChannelMisfit> compare_channels(const Record& record, const Tables& 
       if (!(variance > 0.0)) continue;
       const double product = x.dot(r.col(column));
       const double line = std::min(1.0, product * product / (square * variance));
-      result.push_back({.driver = channels[c].name,
-                        .output = tables.outputs[j].name,
-                        .share_line = line,
-                        .share_smooth = std::clamp(shares(column, row), line, 1.0),
-                        .slope = product / square,
-                        .slope_error = std::sqrt(spreads(row, column)) / square,
-                        .unit = unit_of_slope(tables.outputs[j], tables, channels[c].name)});
+      result.push_back(
+          {.driver = channels[c].name,
+           .output = names[j],
+           .share_line = line,
+           .share_smooth = std::clamp(shares(column, row), line, 1.0),
+           .slope = product / square,
+           .slope_error = std::sqrt(spreads(row, column)) / square,
+           .unit = unit_of_slope(*std::ranges::find(tables.outputs, names[j], &Variable::name),
+                                 tables, channels[c].name)});
     }
   }
   std::ranges::stable_sort(result, std::ranges::greater{}, &ChannelMisfit::share_smooth);

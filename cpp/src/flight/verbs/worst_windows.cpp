@@ -45,13 +45,16 @@ std::vector<Window> find_worst_windows(const std::vector<double>& time, const Ma
     const std::size_t last = rows * (i + 1) / count;
     const auto part =
         residuals.middleRows(static_cast<Index>(first), static_cast<Index>(last - first));
-    Rated next{(part * weight.asDiagonal()).squaredNorm() / static_cast<double>(part.size()),
+    const auto is_there = !part.array().isNaN();
+    const MatrixXd known = is_there.select(part, 0.0);
+    Rated next{(known * weight.asDiagonal()).squaredNorm() / static_cast<double>(is_there.count()),
                {.first_s = time[first], .last_s = time[last - 1], .rows = last - first}};
     for (std::size_t j = 0; j < overall.size(); ++j) {
-      const auto r = part.col(static_cast<Index>(j));
-      const double mean_square = r.squaredNorm() / static_cast<double>(r.size());
-      next.window.rmse.push_back({overall[j].output, std::sqrt(mean_square)});
-      next.window.mean.push_back({overall[j].output, r.mean()});
+      const auto column = static_cast<Index>(j);
+      const auto r = known.col(column);
+      const auto readings = static_cast<double>(is_there.col(column).count());
+      next.window.rmse.push_back({overall[j].output, std::sqrt(r.squaredNorm() / readings)});
+      next.window.mean.push_back({overall[j].output, r.sum() / readings});
     }
     rated.push_back(std::move(next));
   }
