@@ -17,8 +17,9 @@ import pytest
 from apps import APPS, run
 
 VERBS = {
-    "mag": "check fit compare intervals diagnose add apply export simulate effects residuals",
-    "pitot": "check fit compare intervals diagnose add apply export simulate effects residuals",
+    "mag": "check fit compare intervals diagnose add apply track export simulate effects residuals",
+    "pitot": "check fit compare intervals diagnose add apply track export simulate effects "
+    "residuals",
     "aircraft": "check fit two-step compare intervals diagnose add apply track simulate effects "
     "residuals response design",
 }

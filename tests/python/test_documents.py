@@ -39,6 +39,7 @@ VERBS = (
     "fit",
     "compare",
     "residuals",
+    "track",
     "intervals",
     "diagnose",
     "add",

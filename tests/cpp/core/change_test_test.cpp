@@ -68,7 +68,7 @@ Followed run(const Eigen::Vector2d& by, bool one_is_missing) {
   Filter<4, Form> filter(truth, P_0);
   Filter<4> open(truth, P_0);
   ChangeTest<4, 2, double, onsets> changes(
-      {.rows_between = rows_between, .confirm = 12, .nonlinear = 0.0});
+      {.rows_between = rows_between, .confirm = 12, .patience = 20, .nonlinear = 0.0});
   const Eigen::Matrix2d R = 1e-4 * Eigen::Matrix2d::Identity();
   const Square Q = 1e-6 * Eigen::Vector4d(1, 1, 0, 0).asDiagonal();
   Followed found;

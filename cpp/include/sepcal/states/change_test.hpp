@@ -22,6 +22,7 @@ struct ChangeTestOptions {
   int patience = 175;   // the same where several parameters jump, or another explains it as well
   double alarm = 30.0;  // (score / its deviation)^2 of one parameter at one onset
   double join = 12.0;   // what a further parameter has to explain of the same
+  double share = 0.05;  // and at least so much of what the others do: a linearisation errs as well
   double nonlinear = 0.1;  // of a jump's size: what its linearisation may be off
 };
 
@@ -254,13 +255,19 @@ class ChangeTest {
     return states::solve_transposed(told.root, told.score).squaredNorm() / inflation();
   }
 
+  /// What makes a parameter a part of the change, beside others that explain so much.
+  Scalar worth_having(Scalar explained) const {
+    return static_cast<Scalar>(
+        std::max(options_.join, options_.share * static_cast<double>(explained)));
+  }
+
   /// 1 of those that jumped, 0 of the others.
   Parameters choose(const Onset& onset) const {
     Parameters chosen = Parameters::Zero(k_);
     Scalar reached = 0;
     for (Eigen::Index step = 0; step < k_; ++step) {
       Eigen::Index best = -1;
-      Scalar most = reached + static_cast<Scalar>(options_.join);
+      Scalar most = reached + worth_having(reached);
       for (Eigen::Index j = 0; j < k_; ++j) {
         if (chosen[j] != Scalar(0)) continue;
         chosen[j] = 1;
@@ -277,7 +284,7 @@ class ChangeTest {
         if (chosen[j] == Scalar(0) || j == best) continue;
         chosen[j] = 0;
         const Scalar without = explained(onset, chosen);
-        if (reached - without < static_cast<Scalar>(options_.join)) {
+        if (reached - without < worth_having(without)) {
           reached = without;
         } else {
           chosen[j] = 1;
