@@ -75,7 +75,7 @@ constexpr std::array examples{
     Example{"effects", "", "--json"},
     Example{"two-step", "flight.csv --geometry aircraft.json -o two.json",
             "flight.csv --geometry aircraft.json --json"},
-    Example{"track", "flight.csv base.json -o track.csv",
+    Example{"track", "flight.csv base.json --start-rows 300 -o track.csv",
             "another.csv base.json --method iekf -o -"},
     Example{"response", "flight.csv --of q_radps --input elevator_rad -o response.csv",
             "flight.csv --of p_radps --input aileron_rad --input rudder_rad -o -"},

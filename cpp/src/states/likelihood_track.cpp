@@ -62,8 +62,8 @@ class LikelihoodStream {
     return std::move(track_);
   }
 
-  /// What the start's rows tell of the logarithms of the process noises' sizes, all else known, n_w;
-  /// infinite of those that are held.
+  /// What the start's rows tell of the logarithms of the process noises' sizes, all else known,
+  /// n_w; infinite of those that are held.
   VectorXd told_of_sizes() {
     std::unique_ptr<Recursion> recursion;
     follow(recursion, start_.rows);

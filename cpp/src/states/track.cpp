@@ -87,8 +87,8 @@ void check_of_method(const TrackOptions& options) {
     throw OptionError({Option{"changes"}, " is of ekf, iekf and srif; leave it out, or take ekf"});
   }
   if (!(options.forgetting > 0.0 && options.forgetting <= 1.0)) {
-    throw OptionError({Option{"forgetting"},
-                       " is what a sample counts for after the next: above 0, at most 1"});
+    throw OptionError(
+        {Option{"forgetting"}, " is what a sample counts for after the next: above 0, at most 1"});
   }
   refuse(options.every != by_default.every, "every", TrackMethod::rml);
   refuse(options.iterations.iterations != by_default.iterations.iterations, "row_iterations",

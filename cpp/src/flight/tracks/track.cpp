@@ -39,7 +39,8 @@ Index place_of(const StreamStart& start, const std::string& name) {
 }
 
 /// The calibration's start with `own` where first rows have them, all else held, and so wide that
-/// these rows may be followed once more: ten of their standard errors, a hundredth of what they tell.
+/// these rows may be followed once more: ten of their standard errors, a hundredth of what they
+/// tell.
 StreamStart with_own(const Calibration& calibration, const EffectiveFlight& effective,
                      FitOptions fit, const FlightTrackOptions& options) {
   constexpr double wide = 10.0;
