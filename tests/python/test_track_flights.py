@@ -82,6 +82,16 @@ def test_a_tube_that_ices_is_named(seed: int) -> None:
     assert base.track(sepcal.Flight(tube(seed)), changes="find").changes == ()
 
 
+def test_the_plot_shades_what_follows_a_jump() -> None:
+    base = sepcal.fit(sepcal.PitotStatic(), sepcal.Flight(tube(100)))
+    track = base.track(sepcal.Flight(tube(0, iced=0.9)), changes="follow", noise={"airspeed": 0.3})
+    for what in ("estimates", "innovations"):
+        drawn = track.plot(what)
+        assert any("shaded since s_va" in str(trace.name) for trace in drawn.data)
+        stripes = [shape for shape in drawn.layout.shapes if shape.x1 == track.time[-1]]
+        assert any(shape.x0 == track.changes[0].onset_time for shape in stripes)
+
+
 def test_the_program_writes_the_same(tmp_path: Path) -> None:
     for name, data in (("one", tube(1)), ("other", tube(2, iced=0.9))):
         table = np.column_stack(list(data.values()))

@@ -84,15 +84,17 @@ def picture_track(track: Track, what: str) -> list[Figure]:
     has_time = track.time.size == len(track.rows)
     at = track.time if has_time else track.rows.astype(float)
     x_title = "time [s]" if has_time else "row"
+    runs = _since_changes(track, at)
+    said = [f"shaded {name}" for name, _, _ in runs]
     if what == "innovations":
         drawn = [
             draw_beside_zero(
                 f"innovation of {name}", track.units.get(name, "1"), at, track.innovations[:, i],
-                np.full(at.size, float(np.nanstd(track.innovations[:, i]))), [], x_title,
+                np.full(at.size, float(np.nanstd(track.innovations[:, i]))), runs, x_title,
             )
             for i, name in enumerate(track.outputs)
         ]  # fmt: skip
-        return name_bands(drawn, "2 standard deviations of them all")
+        return name_bands(drawn, ", ".join(["2 standard deviations of them all", *said]))
     drawn = [
         draw_with_band(
             name,
@@ -100,13 +102,22 @@ def picture_track(track: Track, what: str) -> list[Figure]:
             at,
             track.estimates[:, i],
             track.standard_deviations[:, i],
-            [],
+            runs,
             x_title,
         )
         for i, name in enumerate(track.names)
         if track.standard_deviations[:, i].any()
     ]
-    return name_bands(drawn, DEVIATIONS)
+    return name_bands(drawn, ", ".join([DEVIATIONS, *said]))
+
+
+def _since_changes(track: Track, at: Array) -> list[Run]:
+    """The stretches behind each change, named by what jumped."""
+    onsets = [float(at[np.searchsorted(track.rows, change.onset)]) for change in track.changes]
+    ends = [*onsets[1:], float(at[-1])] if onsets else []
+    names = [", ".join(moved.name for moved in change.parameters) for change in track.changes]
+    return [(f"since {name} jumped", onset, end)
+            for name, onset, end in zip(names, onsets, ends, strict=True)]  # fmt: skip
 
 
 def picture_smoothed(smoothed: Smoothed, what: str) -> list[Figure]:
