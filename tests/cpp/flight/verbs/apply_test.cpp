@@ -115,7 +115,9 @@ TEST_CASE("whatever is refused leaves the output as it was") {
     CHECK(read_bytes(output) == "old");
   };
   check_kept("mx_ut,my_ut\n1,2\n", {"flight.csv", "'mz_ut' is missing", "the file has: mx_ut"});
-  check_kept("mx_ut,my_ut,mz_ut\n1,2,x\n", {"flight.csv line 2", "'mz_ut'", "drop_invalid drops"});
+  check_kept("mx_ut,my_ut,mz_ut\n1,2,x\n4,5,6\n",
+             {"flight.csv line 2", "'mz_ut'", "drop_invalid drops"});
+  check_kept("mx_ut,my_ut,mz_ut\n1,2,x\n", {"flight.csv line 2", "none in any of 1 rows"});
   check_kept("mx_ut,my_ut,mz_ut\n1,2,3\n4,5\n6,7,8\n", {"flight.csv line 3", "2 cells"});
   check_kept("mx_ut,my_ut,mz_ut,my_cal_ut\n1,2,3,4\n", {"'my_cal_ut' already", "original log"});
   check_refused([&] { apply_to_file(calibration, "nowhere.csv", output); },
