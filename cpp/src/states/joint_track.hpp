@@ -23,8 +23,14 @@ double seconds_between(const Record& record, std::size_t row, std::size_t later)
 template <class Form>
 void forget(Filter<Eigen::Dynamic, Form>& filter, double by) {
   if (by == 1.0) return;
-  filter = Filter<Eigen::Dynamic, Form>(
-      filter.x(), Form::of_covariance_root(filter.form().root() / std::sqrt(by)));
+  const double root = std::sqrt(by);
+  if constexpr (requires(const Form& form) { form.information_root(); }) {
+    filter = Filter<Eigen::Dynamic, Form>(
+        filter.x(), Form::of_information_root(root * filter.form().information_root()));
+  } else {
+    filter = Filter<Eigen::Dynamic, Form>(filter.x(),
+                                          Form::of_covariance_root(filter.form().root() / root));
+  }
 }
 
 /// `method` is ekf, iekf or srif. Throws Error as track().

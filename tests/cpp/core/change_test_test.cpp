@@ -131,11 +131,11 @@ TEST_CASE("a jump of a linear system is found exactly, and the filter is that wh
 }
 
 TEST_CASE("squares of scores are chi squared where nothing jumps, and alarms as rare as they say") {
-  // A constant in white noise, 400 records of 1000 rows: chance of 30 or more is 4e-8 a look.
+  // A constant in white noise, 150 records of 1000 rows: chance of 30 or more is 4e-8 a look.
   // With noise of twice the size the squares are four times theirs, and the test learns it.
   int alarms = 0;
   double scatter = 0.0;
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (std::uint64_t seed = 0; seed < 150; ++seed) {
     Draws draws(1000 + seed);
     Filter<1> filter(Eigen::Vector<double, 1>(0.0), Eigen::Matrix<double, 1, 1>(1e-4));
     ChangeTest<1, 1> changes({.alarm = 30.0});
@@ -151,7 +151,7 @@ TEST_CASE("squares of scores are chi squared where nothing jumps, and alarms as 
       alarms += changes.update<1>(P, one, z, innovation) == ChangeStatus::changed ? 1 : 0;
       learns.update<1>(P, one, z, twice);
     }
-    scatter += learns.inflation() / 400.0;
+    scatter += learns.inflation() / 150.0;
   }
   CHECK(alarms == 0);
   // Squares of one window, 4 on the average, beside the four of size 1 that are taken as seen:

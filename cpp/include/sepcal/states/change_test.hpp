@@ -23,7 +23,8 @@ struct ChangeTestOptions {
   double alarm = 30.0;  // (score / its deviation)^2 of one parameter at one onset
   double join = 12.0;   // what a further parameter has to explain of the same
   double share = 0.05;  // and at least so much of what the others do: a linearisation errs as well
-  double nonlinear = 0.1;  // of a jump's size: what its linearisation may be off
+  double clip = 4.0;    // deviations of a whitened innovation that count for an alarm, at most
+  double nonlinear = 0.25;  // of a jump's size: what its linearisation may be off
 };
 
 enum class ChangeStatus {
@@ -144,6 +145,7 @@ class ChangeTest {
     int row = 0;
     Eigen::Matrix<Scalar, N, K> E = states::zeros<Eigen::Matrix<Scalar, N, K>>();
     Parameters score = states::zeros<Parameters>();
+    Parameters clipped = states::zeros<Parameters>();  // the same without what outliers add
     Information information = states::zeros<Information>();
   };
 
@@ -168,6 +170,7 @@ class ChangeTest {
     onset.E.setZero(n_, k_);
     onset.E.bottomRows(k_).setIdentity();
     onset.score.setZero(k_);
+    onset.clipped.setZero(k_);
     onset.information.setZero(k_, k_);
   }
 
@@ -180,18 +183,21 @@ class ChangeTest {
     }
     const Eigen::Matrix<Scalar, NZ, N> whitened = states::solve_transposed(innovation.S, seen);
     const Eigen::Matrix<Scalar, N, NZ> gain = states::product(P, whitened.transpose());
+    const auto most = static_cast<Scalar>(options_.clip);
+    const Eigen::Vector<Scalar, NZ> clipped = innovation.w.cwiseMax(-most).cwiseMin(most);
     for (int i = 0; i < count_; ++i) {
       Onset& onset = at(i);
       const Eigen::Matrix<Scalar, NZ, K> G = states::product(whitened, onset.E);
       onset.E -= states::product(gain, G);
       onset.score += states::product(G.transpose(), innovation.w);
+      onset.clipped += states::product(G.transpose(), clipped);
       onset.information += states::product(G.transpose(), G);
     }
   }
 
   static Scalar square(const Onset& onset, Eigen::Index j) {
     const Scalar information = onset.information(j, j);
-    return information > 0 ? onset.score[j] * onset.score[j] / information : Scalar(0);
+    return information > 0 ? onset.clipped[j] * onset.clipped[j] / information : Scalar(0);
   }
 
   /// Of onsets until this row.
@@ -350,13 +356,17 @@ class ChangeTest {
   Scalar windows_ = 0;
 };
 
-/// Lets a jump into a filter: s moves by it, and its covariance opens by what is not known of it.
+/// Lets a jump into a filter: s moves by it, and its covariance opens by what is not known of it,
+/// as by a step of time that brings so much noise: in every form, also where P has no digits left.
 template <int N, class Form, int K>
-void follow(Filter<N, Form>& filter, const Jump<N, K, typename Form::Matrix::Scalar>& jump) {
-  auto U = filter.form().root();
-  auto rows = jump.spread;
-  states::absorb_rows(U, rows);
-  filter = Filter<N, Form>(filter.x() + jump.shift, Form::of_covariance_root(U));
+FilterStatus follow(Filter<N, Form>& filter,
+                    const Jump<N, K, typename Form::Matrix::Scalar>& jump) {
+  using Scalar = Form::Matrix::Scalar;
+  const Eigen::Index n = filter.x().size();
+  const Eigen::Index k = jump.spread.rows();
+  return filter.predict(Transition<N, K, Scalar>{
+      filter.x() + jump.shift, Form::Matrix::Identity(n, n), jump.spread.transpose(),
+      Eigen::Matrix<Scalar, K, K>::Identity(k, k)});
 }
 
 }  // namespace sepcal

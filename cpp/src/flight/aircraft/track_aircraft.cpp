@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "flight/aircraft/laid_aircraft.hpp"
-#include "flight/tracks/flight_rows.hpp"
+#include "flight/tracks/tracked_rows.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft.hpp"
 
@@ -86,6 +86,7 @@ TrackedFlight track_aircraft(const AircraftFit& fitted, const Flight& flight,
                           .notes = laid.notes};
     tracked.table = table_of(tracked.track, *laid.model);
     tracks::set_flight_rows(tracked, laid.flight_rows);
+    tracks::note_colour(tracked);
     return tracked;
   });
 }

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/name_list.hpp"
-#include "flight/tracks/flight_rows.hpp"
+#include "flight/tracks/tracked_rows.hpp"
 #include "flight/verbs/prepared_flight.hpp"
 #include "sepcal/composition.hpp"
 #include "sepcal/detail/flight/joint.hpp"
@@ -113,7 +113,9 @@ TrackedFlight track(const Calibration& calibration, const Flight& flight,
                         .outputs = effective.model->tables().outputs,
                         .file = flight.name(),
                         .notes = effective.prepared.notes};
-  if (options.start_rows == 0) {
+  const std::vector<Variable> known = effective.model->tables().parameters();
+  const bool has_wind = std::ranges::find(known, "w_n", &Variable::name) != known.end();
+  if (options.start_rows == 0 && has_wind) {
     tracked.notes.emplace_back(
         "every parameter begins as the calibration has it, the wind of its flight too; find what "
         "is "
@@ -121,11 +123,11 @@ TrackedFlight track(const Calibration& calibration, const Flight& flight,
   }
   const StreamStart start = start_of(calibration, flight, effective, options);
   tracked.track = sepcal::track(*effective.model, record, start, options.how);
-  const std::vector<Variable> known = effective.model->tables().parameters();
   for (const std::string& name : tracked.track.names) {
     tracked.table.push_back(*std::ranges::find(known, name, &Variable::name));
   }
   tracks::set_flight_rows(tracked, prepared.readings.flight_rows);
+  tracks::note_colour(tracked);
   return tracked;
 }
 

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flight/tracks/tracked_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sepcal::tracks {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+/// The correlation of neighbours among numbers, of which some may be NaN; 0 of too few.
+double lag_one(const VectorXd& e) {
+  constexpr Index fewest = 100;
+  double product = 0.0;
+  double square = 0.0;
+  Index pairs = 0;
+  for (Index i = 1; i < e.size(); ++i) {
+    if (std::isnan(e[i]) || std::isnan(e[i - 1])) continue;
+    product += e[i] * e[i - 1];
+    square += 0.5 * (e[i] * e[i] + e[i - 1] * e[i - 1]);
+    ++pairs;
+  }
+  return pairs < fewest || square == 0.0 ? 0.0 : product / square;
+}
+
+}  // namespace
+
+void set_flight_rows(TrackedFlight& tracked, const std::vector<std::size_t>& flight_rows) {
+  for (const std::size_t row : tracked.track.rows) {
+    tracked.flight_rows.push_back(flight_rows[row]);
+  }
+  for (Change& change : tracked.track.changes) {
+    change.onset = flight_rows[change.onset];
+    change.found = flight_rows[change.found];
+  }
+}
+
+void note_colour(TrackedFlight& tracked) {
+  constexpr double white = 0.2;
+  for (std::size_t j = 0; j < tracked.outputs.size(); ++j) {
+    const double r = lag_one(tracked.track.innovations.col(static_cast<Index>(j)));
+    if (r < white) continue;
+    // Of an exponential correlation the mean of n rows is as good as that of n (1 - r) / (1 + r).
+    tracked.notes.push_back(fmt::format(
+        "innovations of {} correlate from row to row ({:.2f}; white noise 0), as in gusts: "
+        "standard "
+        "deviations are too small, by a factor of up to {:.2g}; let what moves walk (--walk "
+        "NAME=SD), or take every n-th row",
+        tracked.outputs[j].name, r, std::sqrt((1.0 + r) / std::max(1e-3, 1.0 - r))));
+  }
+}
+
+}  // namespace sepcal::tracks
