@@ -15,8 +15,8 @@ DEGREE = np.pi / 180
 UNITS = {"lambda": "1", "alpha": "1", "w": "m/s", "eps": "rad", "eta": "rad", "n": "uT"}
 KEYS = [
     "schema_version", "model", "inputs", "options", "status", "message", "parameters", "derived",
-    "restated", "correlation", "collinearity", "unobservable", "weak", "cost", "rmse", "noise", "iterations",
-    "stage_one", "stage_two", "history",
+    "restated", "correlation", "collinearity", "unobservable", "weak", "cost", "rmse", "noise",
+    "iterations", "stage_one", "stage_two", "history",
 ]  # fmt: skip
 
 
