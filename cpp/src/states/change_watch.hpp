@@ -29,6 +29,7 @@ class ChangeWatch {
   void update(Filter<Eigen::Dynamic, Form>& filter, const Eigen::MatrixXd& P,
               const Eigen::MatrixXd& H, const Eigen::VectorXd& y,
               const Innovation<Eigen::Dynamic>& innovation, std::size_t row) {
+    if (!test_) return;
     rows_.push_back(row);
     if (test_->update(P, H, y, innovation) != ChangeStatus::changed) return;
     const auto jump = test_->jump();
