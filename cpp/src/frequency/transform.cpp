@@ -60,7 +60,9 @@ std::vector<double> frequencies_of(const Band& band, double seconds) {
                 " Hz apart; narrow the band, or give a wider spacing");
   }
   std::vector<double> frequencies;
-  for (double k = 0.0; k <= steps; ++k) frequencies.push_back(first + k * spacing);
+  for (std::size_t k = 0; static_cast<double>(k) <= steps; ++k) {
+    frequencies.push_back(first + static_cast<double>(k) * spacing);
+  }
   return frequencies;
 }
 
