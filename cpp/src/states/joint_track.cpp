@@ -342,19 +342,21 @@ class JointStream {
       StateSteps::Reading reading = steps_->read_jointly(row, s.head(n_x()));
       return {std::move(reading.z), of_estimated(reading.H)};
     };
+    const bool is_iterated = options_.method == TrackMethod::iekf;
+    Linearisation<Dynamic, Dynamic> before;  // at the estimate before the row
+    if (!is_iterated || watch_.looks()) before = expected(filter.x());
     const MatrixXd P = watch_.looks() ? filter.covariance() : MatrixXd();
-    const MatrixXd H = watch_.looks() ? expected(filter.x()).jacobian : MatrixXd();
     const Innovation<Dynamic> innovation =
-        options_.method == TrackMethod::iekf
+        is_iterated
             ? iterated_update<Dynamic, Form, Dynamic>(filter, z, expected, R_, options_.iterations)
-            : filter.template update<Dynamic>(z, expected(filter.x()), R_);
+            : filter.template update<Dynamic>(z, before, R_);
     track_.refused += innovation.status == FilterStatus::refused ? 1 : 0;
     track_.not_converged += innovation.status == FilterStatus::not_converged ? 1 : 0;
     VectorXd e = VectorXd::Constant(z.size(), not_a_number);
     for (Index j = 0; j < innovation.e.size(); ++j) {
       if (std::isfinite(z[j])) e[j] = innovation.e[j];
     }
-    if (watch_.looks()) watch_.update(filter, P, H, z, innovation, row);
+    if (watch_.looks()) watch_.update(filter, P, before.jacobian, z, innovation, row);
     keep(row, filter.x(), filter.covariance().diagonal().cwiseSqrt(), e);
   }
 
