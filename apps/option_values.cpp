@@ -42,6 +42,19 @@ std::array<double, 3> parse_turn(const std::string& option, const std::string& t
   return probes::angles_of_quaternion(quaternion);
 }
 
+Band parse_band(const std::string& text) {
+  Band band;
+  if (text.empty()) return band;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    throw Error(fmt::format("--band {}: write LOW:HIGH in Hz, as 0.1:2", text));
+  }
+  band.low = parse_value("--band", text.substr(0, colon));
+  band.high = parse_value("--band", text.substr(colon + 1));
+  check_band(band);
+  return band;
+}
+
 std::uint64_t parse_whole_number(const std::string& option, const std::string& text,
                                  std::uint64_t highest) {
   const bool negative = text.starts_with('-');

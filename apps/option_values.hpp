@@ -12,6 +12,7 @@
 #include <string>
 
 #include "flight/schema/typed_options.hpp"
+#include "sepcal/detail/band.hpp"
 
 namespace sepcal::app {
 
@@ -27,6 +28,10 @@ std::array<double, 3> parse_triple(const std::string& option, const std::string&
 /// roll, pitch and yaw [deg]. Throws Error for one that is not of length one too.
 std::array<double, 3> parse_turn(const std::string& option, const std::string& text,
                                  const std::string& example);
+
+/// --band "0.1:2"; of nothing what a rigid aircraft does. Throws Error for another form, and a band
+/// that is none.
+Band parse_band(const std::string& text);
 
 /// Digits alone, at most `highest`. Throws CLI::ValidationError.
 std::uint64_t parse_whole_number(const std::string& option, const std::string& text,

@@ -42,20 +42,6 @@ std::vector<std::string> split_names(const std::string& text) {
   return text.empty() ? std::vector<std::string>{} : split(text, ',');
 }
 
-/// "0.1:2"; of nothing what a rigid aircraft does.
-Band parse_band(const std::string& text) {
-  Band band;
-  if (text.empty()) return band;
-  const std::size_t colon = text.find(':');
-  if (colon == std::string::npos) {
-    throw Error(fmt::format("--band {}: write LOW:HIGH in Hz, as 0.1:2", text));
-  }
-  band.low = parse_value("--band", text.substr(0, colon));
-  band.high = parse_value("--band", text.substr(colon + 1));
-  check_band(band);
-  return band;
-}
-
 /// What is fitted and how it is laid along the flight, as text until the command line is whole.
 class ModelArguments {
  public:
@@ -336,7 +322,7 @@ class AircraftApp {
           "intervals, by filter error it holds it; apply then adds smoothed states; may be "
           "repeated");
     }
-    tracking_.add_to(track_);
+    tracking_.add_to_aircraft(track_);
     add_deviations(track_, "--initial-state", initial_states_,
                    "standard deviation of a state where a segment begins; else as good as "
                    "unknown; may be repeated");
@@ -544,13 +530,19 @@ class AircraftApp {
     FlightTrackOptions options = tracking_.resolve();
     options.how.process_noise = parse_deviations("--process-noise", process_noise_);
     options.how.initial_states = parse_deviations("--initial-state", initial_states_);
-    const AircraftFit base = read_aircraft_fit(base_);
     OutputFile output(wishes_.output);
-    const TrackedFlight tracked =
-        track_aircraft(base, read_flight(base.options.calibration.log), options);
+    const TrackedFlight tracked = track(options);
     tell_notes(tracked.notes);
     deliver_table(tracked, output);
     return 0;
+  }
+
+  TrackedFlight track(const FlightTrackOptions& options) const {
+    if (const auto steps = read_two_step_fit(base_)) {
+      return track_two_steps(*steps, read_flight(steps->path.options.calibration.log), options);
+    }
+    const AircraftFit base = read_aircraft_fit(base_);
+    return track_aircraft(base, read_flight(base.options.calibration.log), options);
   }
 
   /// Writes a result that is a table, and prints what it says.

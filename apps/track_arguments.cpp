@@ -6,10 +6,12 @@
 namespace sepcal::app {
 
 void TrackArguments::add_to(CLI::App& verb) {
-  verb.add_option("--method", method_,
-                  "rls: recursive least squares linearised at the start; ekf, iekf: the extended "
-                  "and the iterated extended filter; srif: as square-root information; rml: "
-                  "recursive maximum likelihood, which estimates the noises' sizes too")
+  verb.add_option(
+          "--method", method_,
+          "rls: recursive least squares linearised at the start; ekf, iekf: the extended "
+          "and the iterated extended filter; srif: as square-root information; rml: "
+          "recursive maximum likelihood, which estimates the noises' sizes too; rft: recursive "
+          "Fourier transform, of linear models over a band")
       ->type_name("HOW")
       ->capture_default_str();
   verb.add_option("--changes", changes_,
@@ -21,6 +23,12 @@ void TrackArguments::add_to(CLI::App& verb) {
                   "what a sample counts for after the next, above 0, at most 1")
       ->type_name("MU")
       ->capture_default_str();
+  verb.add_option("--memory", options_.how.memory,
+                  "of rls, ekf, iekf, srif, in place of --forgetting: so many rows count, fewer "
+                  "where innovations are larger than expected")
+      ->type_name("ROWS");
+  verb.add_option("--band", band_, "of rft, the frequencies [Hz]; else 0.1:2")
+      ->type_name("LOW:HIGH");
   add_whole_number(verb, "--every", options_.how.every,
                    "of rml: samples from a step of the parameters to the next");
   add_whole_number(verb, "--start-rows", options_.start_rows,
@@ -28,6 +36,15 @@ void TrackArguments::add_to(CLI::App& verb) {
                    "another flight");
   add_deviations(verb, "--walk", walk_,
                  "lets a parameter change on the way, a random walk of SD [unit/sqrt(s)]");
+}
+
+void TrackArguments::add_to_aircraft(CLI::App& verb) {
+  add_to(verb);
+  verb.add_option("--second", second_,
+                  "of two steps, how the coefficients are followed behind the path: rls, ekf, srif "
+                  "or rft; --forgetting, --memory, --band and --changes are theirs")
+      ->type_name("HOW")
+      ->capture_default_str();
 }
 
 void TrackArguments::add_to_sensor(CLI::App& verb) {
@@ -44,9 +61,11 @@ void TrackArguments::add_to_sensor(CLI::App& verb) {
 FlightTrackOptions TrackArguments::resolve() const {
   FlightTrackOptions options = options_;
   options.how.method = choice_of<TrackMethod>("--method", method_);
+  options.second = choice_of<TrackMethod>("--second", second_);
   options.how.changes = choice_of<TrackChanges>("--changes", changes_);
   options.how.walk = parse_deviations("--walk", walk_);
   options.how.noise = parse_deviations("--noise", noise_);
+  if (!band_.empty()) options.how.band = parse_band(band_);
   if (!own_.empty()) options.own = split(own_, ',');
   return options;
 }

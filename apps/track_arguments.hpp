@@ -16,6 +16,9 @@ class TrackArguments {
   /// Those of every subject; they fill this object, which must outlive the parsing.
   void add_to(CLI::App& verb);
 
+  /// Those of an aircraft, which may be two steps.
+  void add_to_aircraft(CLI::App& verb);
+
   /// Those of a sensor, which has no state.
   void add_to_sensor(CLI::App& verb);
 
@@ -28,6 +31,8 @@ class TrackArguments {
   std::vector<std::string> walk_;
   std::vector<std::string> noise_;
   std::string own_;
+  std::string band_;
+  std::string second_ = std::string(to_string(TrackMethod::rls));
   FlightTrackOptions options_;
 };
 

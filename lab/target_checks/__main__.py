@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from target_checks.bad_records import check_bad_records
-from target_checks.changing import check_changing
+from target_checks.changing import check_band, check_changing
 from target_checks.corrections import check_corrections, check_headers, write_headers
 from target_checks.from_c import check_from_c
 from target_checks.images import check_images, measure_images
@@ -29,6 +29,7 @@ CHECKS = (
     check_recursion,
     check_streams,
     check_changing,
+    check_band,
     check_bad_records,
     check_from_c,
 )

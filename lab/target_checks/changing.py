@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A parameter that jumps in flight: found on the target as here, in double and in float."""
+"""Parameters that jump in flight: found on the target as here, and followed over a band."""
 
 from __future__ import annotations
 
@@ -105,3 +105,49 @@ def check_changing(folder: Path, checks: Checks) -> list[str]:
         f"{one.tested} with the test of changes, 12 onsets"
         for scalar, one in (("double", board), ("float", coarse))
     ]
+
+
+FREQUENCIES = np.linspace(0.1, 2.0, 20)  # Hz
+FORGETTING = 0.998
+
+
+def solve_band(rows: Array) -> Array:
+    """Ma, Mq, Md of q' = Ma alpha + Mq q + Md elevator + c over the band, (3,)."""
+    time, elevator, alpha, q = rows[:, [0, 1, 3, 4]].T
+    fade = FORGETTING ** (0.5 * np.arange(time.size)[::-1])
+    since = time - time[0]
+    jw = 2j * np.pi * FREQUENCIES
+    wave = fade * np.exp(-np.outer(jw, since))
+    columns = np.column_stack([alpha - alpha[0], q - q[0], elevator - elevator[0]])
+    decay = -0.5 * np.log(FORGETTING) * RATE
+    z = (jw - decay) * (wave @ columns[:, 1])
+    ends = np.column_stack([wave @ np.ones(time.size), wave @ since, wave[:, -1], np.ones(20)])
+    A = np.column_stack([wave @ columns, ends])
+    parts = np.vstack([A.real, A.imag])
+    unit = np.linalg.norm(parts, axis=0)
+    return (np.linalg.lstsq(parts / unit, np.r_[z.real, z.imag], rcond=None)[0] / unit)[:3]
+
+
+def check_band(folder: Path, checks: Checks) -> list[str]:
+    """The recursive Fourier transform on the target against NumPy's least squares of all rows."""
+    rows = fly()
+    flown = rows[:, [0, 3, 4, 1]]
+    numbers = np.concatenate([FREQUENCIES, [FORGETTING, ROWS], flown.ravel()])
+    here = solve_band(rows)
+    lines = []
+    for scalar, most in (("double", 1e-6), ("float", 0.5)):
+        reader = Reader(run_program(folder / "cortex-m7", f"band_{scalar}", numbers))
+        refused, xi, deviation = int(reader.one()), reader.many(4), reader.many(4)
+        off = float(np.max(np.abs(xi[:3] - here) / deviation[:3]))
+        checks.hold(
+            f"recursive Fourier transform, {scalar}, {ROWS} rows: Ma, Mq, Md within {off:.1e} "
+            "standard errors of NumPy's least squares over the band",
+            refused == 0 and off <= most,
+        )
+        row, estimate = int(reader.one()), int(reader.one())
+        reader.end()
+        lines.append(
+            f"recursive Fourier transform, 4 regressors, 20 frequencies, {scalar}: {row} "
+            f"instructions a row, {estimate} an estimate"
+        )
+    return lines

@@ -3176,9 +3176,15 @@ class FlightTrackOptions:
         initial_states: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         iterations: IterationOptions,
         forgetting: typing.SupportsFloat | typing.SupportsIndex,
+        memory: typing.SupportsFloat | typing.SupportsIndex,
         every: typing.SupportsInt | typing.SupportsIndex,
+        band: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+        ],
+        differentiate: bool,
         start_rows: typing.SupportsInt | typing.SupportsIndex,
         own: collections.abc.Sequence[str],
+        second: str,
     ) -> None: ...
 
 class Innovation:

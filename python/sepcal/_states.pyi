@@ -268,6 +268,9 @@ class SteppedFit:
     def text(self) -> str: ...
 
 class Steps:
+    def track(
+        self, arg0: sepcal._core.Flight, arg1: sepcal._core.FlightTrackOptions
+    ) -> tuple[sepcal._core.Track, list[str]]: ...
     @property
     def aero(self) -> Fit: ...
     @property
@@ -486,16 +489,8 @@ def track(
     arg0: sepcal._core.Model,
     arg1: dict,
     arg2: collections.abc.Sequence[str],
-    arg3: str,
-    arg4: typing.SupportsInt | typing.SupportsIndex | None,
-    arg5: sepcal._core.Fit | None,
-    arg6: sepcal._core.Options,
-    arg7: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg8: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg9: str,
-    arg10: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
-    arg11: sepcal._core.IterationOptions,
-    arg12: typing.SupportsFloat | typing.SupportsIndex,
-    arg13: typing.SupportsInt | typing.SupportsIndex,
+    arg3: sepcal._core.Fit | None,
+    arg4: sepcal._core.Options,
+    arg5: sepcal._core.FlightTrackOptions,
 ) -> sepcal._core.Track: ...
 def two_steps(arg0: sepcal._core.Flight, arg1: Options) -> Steps: ...

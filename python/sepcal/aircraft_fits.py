@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Unpack, overload
 from sepcal import _core
 from sepcal.aircraft import Aero, AircraftModel
 from sepcal.arguments import checked
+from sepcal.bands import RIGID
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
 from sepcal.diagnosis import Diagnosis
@@ -402,7 +403,7 @@ class AircraftFit(Fit):
         flight: AnyFlight | None = None,
         *,
         start_rows: int = 0,
-        method: Literal["rls", "ekf", "iekf", "srif", "rml"] | str = "ekf",
+        method: Literal["rls", "ekf", "iekf", "srif", "rml", "rft"] | str = "ekf",
         noise: Mapping[str, float] | None = None,
         process_noise: Mapping[str, float] | None = None,
         walk: Mapping[str, float] | None = None,
@@ -411,7 +412,10 @@ class AircraftFit(Fit):
         row_iterations: int = 20,
         tolerance: float = 1e-8,
         forgetting: float = 1.0,
+        memory: float = 0.0,
         every: int = 10,
+        band: tuple[float, float] = RIGID,
+        spacing: float = 0.0,
     ) -> Track:
         """States and parameters against time, as a filter in flight estimates them.
 
@@ -429,7 +433,10 @@ class AircraftFit(Fit):
             row_iterations: Of iekf, at most so many a row.
             tolerance: Of iekf.
             forgetting: What a sample counts for after the next, above 0, at most 1.
+            memory: As of sepcal.track().
             every: Of rml: samples from a step of the parameters to the next.
+            band: Of rft, as of sepcal.track().
+            spacing: Of rft.
 
         Raises:
             Error: The fit's own flight without start_rows, whose rows must not count twice; rows
@@ -454,7 +461,10 @@ class AircraftFit(Fit):
             row_iterations=row_iterations,
             tolerance=tolerance,
             forgetting=forgetting,
+            memory=memory,
             every=every,
+            band=band,
+            spacing=spacing,
             start_rows=start_rows,
         )
         core, notes = self.core.track(chosen._core, options)
@@ -625,6 +635,7 @@ class TwoSteps(Page):
     _shown = ("name", "value", "standard_error", "unit")
 
     def __init__(self, core: _states.Steps, flight: Flight) -> None:
+        self._core, self._flight = core, flight
         self.path, self.aero = AircraftFit(core.path, flight), AircraftFit(core.aero, flight)
         self.notes, self._page, self._json = core.notes, core.text, core.json
 
@@ -645,6 +656,76 @@ class TwoSteps(Page):
             >>> _ = (folder / "steps.json").write_text(steps.to_json())
         """
         return self._json
+
+    def track(
+        self,
+        flight: AnyFlight | None = None,
+        *,
+        start_rows: int = 0,
+        method: Literal["ekf", "iekf", "srif"] | str = "ekf",
+        second: Literal["rls", "ekf", "srif", "rft"] | str = "rls",
+        noise: Mapping[str, float] | None = None,
+        process_noise: Mapping[str, float] | None = None,
+        walk: Mapping[str, float] | None = None,
+        changes: Literal["ignore", "find", "follow"] | str = "ignore",
+        forgetting: float = 1.0,
+        memory: float = 0.0,
+        band: tuple[float, float] = RIGID,
+        spacing: float = 0.0,
+    ) -> Track:
+        """Both steps in flight: a filter of the path, and the coefficients where it says one is.
+
+        Coefficients of a row are known half a window of the rates' differentiation later.
+
+        Args:
+            flight: By default the fitted one, which needs start_rows.
+            start_rows: Fits so many first rows and goes on after them; 0: from these steps, which
+                must be of another flight.
+            method: Of the path, as of sepcal.track().
+            second: Of the coefficients.
+            noise: Standard deviations of the path's outputs [the start's].
+            process_noise: Of the path, {"ax": sd, ...} [that of the readings].
+            walk: Random walks of parameters of either step; coefficients walk by ekf and srif.
+            changes: "find" or "follow" coefficients that jump, by ekf and srif.
+            forgetting: Of the second step, as the three that follow.
+            memory: As of sepcal.track().
+            band: Of rft.
+            spacing: Of rft.
+
+        Returns:
+            A Track: states and parameters of the path, then the coefficients' terms.
+
+        Raises:
+            Error: As of AircraftFit.track().
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=800)
+            >>> steps = sepcal.two_step(flight, aircraft, equations={"CZ": ["1", "alpha"]})
+            >>> steps.track(start_rows=400).names[-2:]
+            ['CZ[1]', 'CZ[alpha]']
+        """
+        chosen = self.path._or_fitted(flight, "track(")
+        options = track_options(
+            method=method,
+            noise=noise,
+            walk=walk,
+            changes=changes,
+            row_iterations=20,
+            tolerance=1e-8,
+            start_rows=start_rows,
+            process_noise=process_noise,
+            forgetting=forgetting,
+            memory=memory,
+            band=band,
+            spacing=spacing,
+            second=second,
+        )
+        core, notes = self._core.track(chosen._core, options)
+        units = {**self.path._units_on(chosen), **self.aero._units_on(chosen)}
+        return Track(core, units, notes)
 
     def _summary(self) -> str:
         return f"path {self.path.status}, aerodynamics {self.aero.status}"

@@ -13,6 +13,7 @@ import numpy as np
 from sepcal import _core
 from sepcal.aircraft_fits import AircraftFit, read_fit
 from sepcal.arguments import Missing, checked
+from sepcal.bands import RIGID
 from sepcal.certificates import Certificate
 from sepcal.columns import Array
 from sepcal.comparison import Comparison
@@ -197,13 +198,16 @@ class Calibration(Fit):
         *,
         start_rows: int = 0,
         own: Sequence[str] = (),
-        method: Literal["rls", "ekf", "iekf", "srif"] | str = "ekf",
+        method: Literal["rls", "ekf", "iekf", "srif", "rft"] | str = "ekf",
         noise: Mapping[str, float] | None = None,
         walk: Mapping[str, float] | None = None,
         changes: Literal["ignore", "find", "follow"] | str = "ignore",
         row_iterations: int = 20,
         tolerance: float = 1e-8,
         forgetting: float = 1.0,
+        memory: float = 0.0,
+        band: tuple[float, float] = RIGID,
+        spacing: float = 0.0,
     ) -> Track:
         """Parameters against time, as a filter in flight estimates them.
 
@@ -220,6 +224,9 @@ class Calibration(Fit):
             row_iterations: Of iekf, at most so many a row.
             tolerance: Of iekf.
             forgetting: What a sample counts for after the next, above 0, at most 1.
+            memory: As of sepcal.track().
+            band: Of rft, as of sepcal.track().
+            spacing: Of rft.
 
         Raises:
             Error: The calibration's own flight without start_rows, whose rows must not count twice;
@@ -248,6 +255,9 @@ class Calibration(Fit):
             row_iterations=row_iterations,
             tolerance=tolerance,
             forgetting=forgetting,
+            memory=memory,
+            band=band,
+            spacing=spacing,
             start_rows=start_rows,
             own=own,
         )

@@ -11,6 +11,7 @@ import numpy as np
 
 from sepcal import _core
 from sepcal.arguments import Missing, Misuse, checked, shown
+from sepcal.bands import RIGID, to_band
 from sepcal.columns import Array, Columns, by_name, labels_in, take_columns
 from sepcal.fit_options import FitOptions
 from sepcal.flight import Flight
@@ -146,8 +147,13 @@ def track_options(
     process_noise: Mapping[str, float] | None = None,
     initial_states: Mapping[str, float] | None = None,
     forgetting: float = 1.0,
+    memory: float = 0.0,
     every: int = 10,
+    band: tuple[float, float] = RIGID,
+    spacing: float = 0.0,
+    differentiate: bool = False,
     own: Sequence[str] = (),
+    second: str = "rls",
 ) -> _core.FlightTrackOptions:
     """How a flight is followed, as the core has it."""
     return _core.FlightTrackOptions(
@@ -159,9 +165,13 @@ def track_options(
         initial_states=dict(initial_states or {}),
         iterations=_core.IterationOptions(row_iterations, tolerance),
         forgetting=forgetting,
+        memory=memory,
         every=every,
+        band=to_band(band, spacing),
+        differentiate=differentiate,
         start_rows=start_rows,
         own=list(own),
+        second=second,
     )
 
 
@@ -173,7 +183,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
     *,
     fitted: Fit | None = None,
     start_rows: int | None = None,
-    method: Literal["rls", "ekf", "iekf", "srif", "rml"] | str = "ekf",
+    method: Literal["rls", "ekf", "iekf", "srif", "rml", "rft"] | str = "ekf",
     process_noise: Mapping[str, float] | None = None,
     walk: Mapping[str, float] | None = None,
     changes: Literal["ignore", "find", "follow"] | str = "ignore",
@@ -181,7 +191,11 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
     row_iterations: int = 20,
     tolerance: float = 1e-8,
     forgetting: float = 1.0,
+    memory: float = 0.0,
     every: int = 10,
+    band: tuple[float, float] = RIGID,
+    spacing: float = 0.0,
+    differentiate: bool = False,
     **options: Unpack[FitOptions],
 ) -> Track:
     """Runs a recursive estimator along a record, from a calibration or from its own first rows.
@@ -198,7 +212,9 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
         method: "rls", recursive least squares linearised at the start; "ekf", the extended filter;
             "iekf", iterated; "srif", the extended filter as square-root information; "rml",
             recursive maximum likelihood, S 5.10 to 5.13, from a start by filter error: sizes of the
-            noises are estimated too, `q_alpha`, `r_alpha_m`.
+            noises are estimated too, `q_alpha`, `r_alpha_m`; "rft", of models that are linear in
+            their parameters, the recursive Fourier transform: equation error over a band (Morelli,
+            J. Guid. Control Dyn. 23, 2000).
         process_noise: Of a model with a state: roots of the noises' spectral densities, {name: sd},
             by the names and in the units of its table of noises; those not named are none. By rml
             these are held, and those not named are estimated, as `noise` is of outputs. With
@@ -214,7 +230,13 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
         row_iterations: Of iekf, at most so many a row.
         tolerance: Of iekf: it ends where a step is shorter, in standard deviations of the estimate.
         forgetting: What a sample counts for after the next, above 0, at most 1.
+        memory: Of rls, ekf, iekf and srif: so many rows count while innovations are as large as
+            expected, fewer where they are larger [0: forgetting is constant].
         every: Of rml: samples from a step of the parameters to the next.
+        band: Of rft, (low, high) of the frequencies [Hz].
+        spacing: Of rft, of the frequencies [0: 0.05 Hz].
+        differentiate: Of rft: outputs hold what the model gives the derivatives of, and their
+            transforms are multiplied by jw in place of a differentiation in time.
         **options: FitOptions.
 
     Returns:
@@ -268,17 +290,25 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             model._core,
             columns,
             labels_in(data),
-            method,
-            start_rows,
             fitted,
             to_core(options),
-            dict(process_noise or {}),
-            dict(walk or {}),
-            changes,
-            dict(initial_states or {}),
-            _core.IterationOptions(row_iterations, tolerance),
-            forgetting,
-            every,
+            track_options(
+                method=method,
+                noise=None,
+                walk=walk,
+                changes=changes,
+                row_iterations=row_iterations,
+                tolerance=tolerance,
+                start_rows=start_rows or 0,
+                process_noise=process_noise,
+                initial_states=initial_states,
+                forgetting=forgetting,
+                memory=memory,
+                every=every,
+                band=band,
+                spacing=spacing,
+                differentiate=differentiate,
+            ),
         ),
         model.units,
     )

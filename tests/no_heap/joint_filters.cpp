@@ -3,6 +3,7 @@
 // software compiles them.
 #include "sepcal/detail/models/scalar_examples.hpp"
 #include "sepcal/detail/states/joseph_form.hpp"
+#include "sepcal/frequency/recursive_band.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/joint_filter.hpp"
 #include "sepcal/states/recursive_likelihood.hpp"
@@ -89,6 +90,13 @@ double run_likelihood(const double* y, int count) {
   return likelihood.theta().sum() + likelihood.recursion().cost();
 }
 
+double run_over_band(const double* y, int count) {
+  sepcal::RecursiveBand<2, 5> band(Eigen::Vector<double, 5>::LinSpaced(5, 0.2, 1.0),
+                                   {.forgetting = 0.99, .differentiate = true});
+  for (int k = 0; k < count; ++k) band.absorb(0.1 * k, Eigen::Vector2d(y[k], 1.0), y[k]);
+  return band.estimate().xi.sum();
+}
+
 }  // namespace
 
 double run_all(const double* y, int count);
@@ -96,5 +104,6 @@ double run_all(const double* y, int count);
 double run_all(const double* y, int count) {
   return run_jointly<sepcal::SquareRootForm<4>>(y, count) +
          run_jointly<sepcal::InformationForm<4>>(y, count) +
-         run_jointly<sepcal::JosephForm<4>>(y, count) + run_likelihood(y, count);
+         run_jointly<sepcal::JosephForm<4>>(y, count) + run_likelihood(y, count) +
+         run_over_band(y, count);
 }

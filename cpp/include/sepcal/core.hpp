@@ -32,6 +32,7 @@
 #include "sepcal/states/smoother.hpp"
 #include "sepcal/states/state_model.hpp"              // a model with a state
 #include "sepcal/states/change_test.hpp"              // when parameters jump, and which
+#include "sepcal/frequency/recursive_band.hpp"         // equation error over a band, row by row
 #include "sepcal/states/joint_filter.hpp"             // states and parameters together
 #include "sepcal/states/recursive_likelihood.hpp"
 #include "sepcal/models/flight_path.hpp"

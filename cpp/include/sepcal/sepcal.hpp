@@ -69,6 +69,7 @@
 #include "sepcal/detail/aircraft/equations.hpp"       // coefficients as sums of regressors
 #include "sepcal/detail/aircraft/coefficients.hpp"    // those that a flight had
 #include "sepcal/aircraft/aero_model.hpp"      // equation error
+#include "sepcal/detail/band.hpp"              // of frequencies
 #include "sepcal/detail/frequency/transform.hpp"      // a record over a band of frequencies
 #include "sepcal/frequency/fit_in_band.hpp"    // equation error there
 #include "sepcal/frequency/output_error_in_band.hpp"

@@ -108,6 +108,21 @@ Tracking track_on(const AircraftFit& fitted, const Flight& flight,
   return tracking(track_aircraft(fitted, flight, options));
 }
 
+/// What the app's two-step prints.
+struct FittedSteps {
+  AircraftFit path;
+  AircraftFit aero;
+  std::vector<std::string> notes;
+  std::string json;
+  Page page;
+};
+
+Tracking track_steps(const FittedSteps& fitted, const Flight& flight,
+                     const FlightTrackOptions& options) {
+  const Released released;
+  return tracking(track_two_steps({.path = fitted.path, .aero = fitted.aero}, flight, options));
+}
+
 DiagnosisOptions with_threads_of(const AircraftFit& fitted, const DiagnosisOptions& asked) {
   return with_threads(asked, fitted.options.calibration.fit.threads);
 }
@@ -190,15 +205,6 @@ void save(const AircraftFit& fitted, const std::string& file) {
   output.commit();
 }
 
-/// What the app's two-step prints.
-struct FittedSteps {
-  AircraftFit path;
-  AircraftFit aero;
-  std::vector<std::string> notes;
-  std::string json;
-  Page page;
-};
-
 FittedSteps two_steps(const Flight& flight, const AircraftOptions& options) {
   TwoStepFit fitted = fit_two_steps(flight, options);
   std::string json = to_json(fitted);
@@ -257,6 +263,7 @@ void define_fits(py::module_& module) {
       .def_readonly("aero", &FittedSteps::aero)
       .def_readonly("notes", &FittedSteps::notes)
       .def_readonly("json", &FittedSteps::json)
+      .def("track", &track_steps)
       .def_property_readonly("text", [](const FittedSteps& self) { return self.page.text; })
       .def_property_readonly("explained",
                              [](const FittedSteps& self) { return self.page.explained; });

@@ -4,6 +4,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -94,8 +95,10 @@ void define_track(py::module_& module) {
       .def(py::init([](const std::string& method, const Deviations& noise,
                        const Deviations& process_noise, const Deviations& walk,
                        const std::string& changes, const Deviations& initial_states,
-                       const IterationOptions& iterations, double forgetting, int every,
-                       std::size_t start_rows, const std::vector<std::string>& own) {
+                       const IterationOptions& iterations, double forgetting, double memory,
+                       int every, const std::array<double, 3>& band, bool differentiate,
+                       std::size_t start_rows, const std::vector<std::string>& own,
+                       const std::string& second) {
              return FlightTrackOptions{
                  .how = {.method = choice_of<TrackMethod>("method", method),
                          .noise = noise,
@@ -105,12 +108,17 @@ void define_track(py::module_& module) {
                          .initial_states = initial_states,
                          .iterations = iterations,
                          .forgetting = forgetting,
-                         .every = every},
+                         .memory = memory,
+                         .every = every,
+                         .band = {band[0], band[1], band[2]},
+                         .differentiate = differentiate},
                  .start_rows = start_rows,
-                 .own = own};
+                 .own = own,
+                 .second = choice_of<TrackMethod>("second", second)};
            }),
            py::kw_only(), "method"_a, "noise"_a, "process_noise"_a, "walk"_a, "changes"_a,
-           "initial_states"_a, "iterations"_a, "forgetting"_a, "every"_a, "start_rows"_a, "own"_a);
+           "initial_states"_a, "iterations"_a, "forgetting"_a, "memory"_a, "every"_a, "band"_a,
+           "differentiate"_a, "start_rows"_a, "own"_a, "second"_a);
 }
 
 /// Matrices one after another, (N, n, n).

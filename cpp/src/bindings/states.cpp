@@ -19,10 +19,10 @@
 #include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/own_state_model.hpp"
+#include "sepcal/flight/track.hpp"
 #include "sepcal/models/flight_path.hpp"
 #include "sepcal/models/short_period.hpp"
 #include "sepcal/states/smooth_record.hpp"
-#include "sepcal/states/track.hpp"
 #include "structs.hpp"
 
 namespace sepcal::bindings {
@@ -151,32 +151,21 @@ StreamStart start_of_rows(const Model& model, const Record& record, std::size_t 
 }
 
 Tracked track_columns(const Model& model, const py::dict& columns,
-                      const std::vector<std::string>& labels, const std::string& method,
-                      std::optional<std::size_t> start_rows,
+                      const std::vector<std::string>& labels,
                       const std::optional<FittedModel>& start, const CalibrationOptions& options,
-                      const std::map<std::string, double>& process_noise,
-                      const std::map<std::string, double>& walk, const std::string& changes,
-                      const std::map<std::string, double>& initial_states,
-                      const IterationOptions& iterations, double forgetting, int every) {
-  TrackOptions how{.method = choice_of<TrackMethod>("method", method),
-                   .noise = options.fit.noise,
-                   .process_noise = process_noise,
-                   .walk = walk,
-                   .changes = choice_of<TrackChanges>("changes", changes),
-                   .initial_states = initial_states,
-                   .iterations = iterations,
-                   .forgetting = forgetting,
-                   .every = every};
+                      const FlightTrackOptions& asked) {
+  TrackOptions how = asked.how;
+  how.noise = options.fit.noise;
   const Record record = record_of(columns, labels);
   const Released released;
   CalibrationOptions batch = options;
   if (how.method == TrackMethod::rml) batch.fit.method = FitMethod::filter_error;
-  if (how.method != TrackMethod::rml && !process_noise.empty()) {
+  if (how.method != TrackMethod::rml && !how.process_noise.empty()) {
     batch.fit.method = FitMethod::filter_error;
-    batch.fit.process_noise = process_noise;
+    batch.fit.process_noise = how.process_noise;
   }
-  const StreamStart begin = start ? start_from_fit(start->fit)
-                                  : start_of_rows(model, record, start_rows.value_or(0), batch);
+  const StreamStart begin =
+      start ? start_from_fit(start->fit) : start_of_rows(model, record, asked.start_rows, batch);
   const std::shared_ptr<const BlockModel> laid = model.along ? model.along(&record) : model.block;
   Tracked tracked{track(*laid, record, begin, how), {}};
   for (const Variable& output : laid->tables().outputs) tracked.outputs.push_back(output.name);

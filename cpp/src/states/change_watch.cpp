@@ -9,6 +9,7 @@
 namespace sepcal::states {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -16,6 +17,7 @@ namespace {
 constexpr double between_onsets = 0.5;  // s
 constexpr double to_confirm = 2.0;      // s
 constexpr double patience = 3.5;        // s
+constexpr std::size_t onsets = 25;      // filters that are kept: the test's window and its verdict
 
 /// The mean time from a row to the next [s]; 0 where there are none, or no time.
 double mean_step(const Record& record) {
@@ -45,7 +47,9 @@ ChangeWatch::ChangeWatch(const Record& record, std::vector<std::string> names, I
                          TrackChanges what)
     : record_(record), names_(std::move(names)), what_(what) {
   if (what_ == TrackChanges::ignore || names_.empty()) return;
-  test_.emplace(options_for(record), n, static_cast<Index>(names_.size()));
+  const ChangeTestOptions options = options_for(record);
+  between_ = static_cast<std::size_t>(options.rows_between);
+  test_.emplace(options, n, static_cast<Index>(names_.size()));
 }
 
 void ChangeWatch::predict(const Eigen::MatrixXd& Phi) {
@@ -54,10 +58,35 @@ void ChangeWatch::predict(const Eigen::MatrixXd& Phi) {
 
 void ChangeWatch::restart() {
   if (test_) test_->restart();
+  kept_.clear();
 }
 
-Change ChangeWatch::change_of(const Jump<Eigen::Dynamic, Eigen::Dynamic>& jump,
-                              const VectorXd& s) const {
+void ChangeWatch::keep(const VectorXd& s, const MatrixXd& root) {
+  if (what_ != TrackChanges::follow) return;
+  if (kept_.size() == onsets) kept_.pop_front();
+  kept_.push_back({rows_.size(), s, root, cost_});
+}
+
+std::vector<ChangeWatch::Kept> ChangeWatch::about_onset(const Jumped& jump) const {
+  const std::size_t onset = rows_.size() - static_cast<std::size_t>(jump.rows);
+  std::vector<Kept> about;
+  for (const Kept& kept : kept_) {
+    if (kept.rows + between_ >= onset && kept.rows <= onset + between_) about.push_back(kept);
+  }
+  return about;
+}
+
+ChangeWatch::Kept ChangeWatch::opened(Kept kept, const Jumped& jump) {
+  const Index k = jump.reach.size();
+  const Index n = kept.s.size();
+  kept.s.tail(k) += jump.opened;
+  MatrixXd rows = MatrixXd::Zero(k, n);
+  rows.rightCols(k) = jump.reach.asDiagonal();
+  absorb_rows(kept.root, rows);
+  return kept;
+}
+
+Change ChangeWatch::change_of(const Jumped& jump, const VectorXd& s) const {
   const auto k = static_cast<Index>(names_.size());
   const VectorXd after = (s + jump.moved).tail(k);
   const std::size_t last = rows_.size() - 1;
@@ -79,6 +108,23 @@ Change ChangeWatch::change_of(const Jump<Eigen::Dynamic, Eigen::Dynamic>& jump,
     change.parameters.push_back(std::move(moved));
   }
   return change;
+}
+
+void ChangeWatch::say_since(const Kept& onset, const VectorXd& s, const MatrixXd& P,
+                            Change& change) const {
+  change.onset = rows_[onset.rows - 1];
+  if (record_.has("time")) change.onset_time = record_.column("time")[change.onset];
+  const auto k = static_cast<Index>(names_.size());
+  const VectorXd before = onset.s.tail(k);
+  const VectorXd after = s.tail(k);
+  const VectorXd variances =
+      P.diagonal().tail(k) + onset.root.rightCols(k).colwise().squaredNorm().transpose();
+  for (ParameterChange& moved : change.parameters) {
+    const auto j = std::ranges::find(names_, moved.name) - names_.begin();
+    moved.before = before[j];
+    moved.after = after[j];
+    moved.standard_deviation = std::sqrt(variances[j]);
+  }
 }
 
 }  // namespace sepcal::states

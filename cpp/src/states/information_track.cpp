@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "states/information_track.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace sepcal::states {
@@ -35,6 +36,15 @@ bool InformationTrack::absorb(const MatrixXd& sample) {
   MatrixXd rows = sample;
   factor_.absorb(rows);
   return true;
+}
+
+VectorXd InformationTrack::whitened(const MatrixXd& sample) const {
+  const Index k = sample.cols() - 1;
+  const MatrixXd H = sample.leftCols(k);
+  const MatrixXd spread = H * inverse_of(root());
+  const MatrixXd S = MatrixXd::Identity(sample.rows(), sample.rows()) + spread * spread.transpose();
+  const VectorXd e = sample.col(k) - H * solution();
+  return S.llt().matrixL().solve(e);
 }
 
 void InformationTrack::forget(double by) {

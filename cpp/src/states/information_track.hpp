@@ -17,6 +17,9 @@ class InformationTrack {
   explicit InformationTrack(const Eigen::MatrixXd& R);
   /// False, and nothing absorbed, where a number is not finite.
   bool absorb(const Eigen::MatrixXd& sample);
+  /// What a sample brings beyond what is expected of it, of unit covariance where it is as noisy
+  /// as its rows say.
+  Eigen::VectorXd whitened(const Eigen::MatrixXd& sample) const;
   /// All that was absorbed counts for so much less: R'R by it.
   void forget(double by);
   Eigen::VectorXd solution() const;    // k

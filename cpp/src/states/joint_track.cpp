@@ -151,7 +151,8 @@ class JointStream {
         R_(noise_of(plan_.tables().outputs, start, options).cwiseAbs2().asDiagonal()),
         steps_(model.steps(record, xi_)),
         watch_(record, free_names(layout_), n_x() + static_cast<Index>(layout_.free.size()),
-               options.changes) {
+               options.changes),
+        forgetting_(options) {
     base::deviations_in_order(plan_.model().states, options.initial_states, "state");
     for (const Variable& output : plan_.tables().outputs) {
       outputs_.push_back(record.column(output.name));
@@ -308,22 +309,27 @@ class JointStream {
   }
 
   /// From `row` to the next.
-  template <class Form>
-  FilterStatus predict(Filter<Dynamic, Form>& filter, std::size_t row) {
-    set_parameters(filter.x());
-    StateSteps::JointStep step = steps_->advance_jointly(row, filter.x().head(n_x()), density_);
-    const Index n = filter.x().size();
-    Transition<Dynamic, Dynamic> next{filter.x(), MatrixXd::Identity(n, n),
-                                      MatrixXd::Identity(n, n_x()), std::move(step.Q_d)};
+  Transition<Dynamic, Dynamic> step_from(std::size_t row, const VectorXd& s) {
+    set_parameters(s);
+    StateSteps::JointStep step = steps_->advance_jointly(row, s.head(n_x()), density_);
+    const Index n = s.size();
+    Transition<Dynamic, Dynamic> next{s, MatrixXd::Identity(n, n), MatrixXd::Identity(n, n_x()),
+                                      std::move(step.Q_d)};
     if (!walk_.isZero(0.0)) {  // what walks is driven too
       next.Q_d = with_walk(next.Q_d, seconds_between(record_, row, row + 1));
       next.Gamma = MatrixXd::Identity(n, n);
     }
     next.x.head(n_x()) = step.x;
     next.Phi.topRows(n_x()) = of_estimated(step.Phi);
+    return next;
+  }
+
+  template <class Form>
+  FilterStatus predict(Filter<Dynamic, Form>& filter, std::size_t row) {
+    const Transition<Dynamic, Dynamic> next = step_from(row, filter.x());
     const FilterStatus status = filter.predict(next);
     if (status != FilterStatus::refused) watch_.predict(next.Phi);
-    forget(filter, options_.forgetting);
+    forget(filter, forgetting_.next());
     return status;
   }
 
@@ -334,29 +340,53 @@ class JointStream {
     return both;
   }
 
+  Linearisation<Dynamic, Dynamic> expected(std::size_t row, const VectorXd& s) {
+    set_parameters(s);
+    StateSteps::Reading reading = steps_->read_jointly(row, s.head(n_x()));
+    return {std::move(reading.z), of_estimated(reading.H)};
+  }
+
+  /// By the reading z of a row, `before` its outputs at the estimate before it.
+  template <class Form>
+  Innovation<Dynamic> absorb(Filter<Dynamic, Form>& filter, std::size_t row, const VectorXd& z,
+                             const Linearisation<Dynamic, Dynamic>& before) {
+    if (options_.method != TrackMethod::iekf) return filter.template update<Dynamic>(z, before, R_);
+    return iterated_update<Dynamic, Form, Dynamic>(
+        filter, z, [&](const VectorXd& s) { return expected(row, s); }, R_, options_.iterations);
+  }
+
+  /// The last rows until `row` again, all in its segment: V_m of them.
+  template <class Form>
+  double run_again(Filter<Dynamic, Form>& filter, std::size_t row, std::size_t count) {
+    double cost = 0.0;
+    for (std::size_t at = row - count; at < row; ++at) {
+      filter.predict(step_from(at, filter.x()));
+      forget(filter, forgetting_.constant());
+      const Innovation<Dynamic> innovation =
+          absorb(filter, at + 1, reading(at + 1), expected(at + 1, filter.x()));
+      if (innovation.status != FilterStatus::refused) cost += innovation.cost();
+    }
+    return cost;
+  }
+
   template <class Form>
   void update(Filter<Dynamic, Form>& filter, std::size_t row) {
     const VectorXd z = reading(row);
-    const auto expected = [&](const VectorXd& s) -> Linearisation<Dynamic, Dynamic> {
-      set_parameters(s);
-      StateSteps::Reading reading = steps_->read_jointly(row, s.head(n_x()));
-      return {std::move(reading.z), of_estimated(reading.H)};
-    };
-    const bool is_iterated = options_.method == TrackMethod::iekf;
     Linearisation<Dynamic, Dynamic> before;  // at the estimate before the row
-    if (!is_iterated || watch_.looks()) before = expected(filter.x());
+    if (options_.method != TrackMethod::iekf || watch_.looks()) before = expected(row, filter.x());
     const MatrixXd P = watch_.looks() ? filter.covariance() : MatrixXd();
-    const Innovation<Dynamic> innovation =
-        is_iterated
-            ? iterated_update<Dynamic, Form, Dynamic>(filter, z, expected, R_, options_.iterations)
-            : filter.template update<Dynamic>(z, before, R_);
+    const Innovation<Dynamic> innovation = absorb(filter, row, z, before);
+    forgetting_.follow(innovation.w, innovation.count);
     track_.refused += innovation.status == FilterStatus::refused ? 1 : 0;
     track_.not_converged += innovation.status == FilterStatus::not_converged ? 1 : 0;
     VectorXd e = VectorXd::Constant(z.size(), not_a_number);
     for (Index j = 0; j < innovation.e.size(); ++j) {
       if (std::isfinite(z[j])) e[j] = innovation.e[j];
     }
-    if (watch_.looks()) watch_.update(filter, P, before.jacobian, z, innovation, row);
+    watch_.update(filter, P, before.jacobian, z, innovation, row,
+                  [&](Filter<Dynamic, Form>& anew, std::size_t count) {
+                    return run_again(anew, row, count);
+                  });
     keep(row, filter.x(), filter.covariance().diagonal().cwiseSqrt(), e);
   }
 
@@ -407,6 +437,7 @@ class JointStream {
   std::unique_ptr<StateSteps> steps_;
   std::vector<std::span<const double>> outputs_;
   ChangeWatch watch_;
+  Forgetting forgetting_;
   Track track_;
 };
 

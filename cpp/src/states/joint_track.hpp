@@ -33,6 +33,33 @@ void forget(Filter<Eigen::Dynamic, Form>& filter, double by) {
   }
 }
 
+/// By how much, from row to row.
+class Forgetting {
+ public:
+  explicit Forgetting(const TrackOptions& options)
+      : constant_(options.memory > 0.0 ? 1.0 - 1.0 / options.memory : options.forgetting),
+        memory_(options.memory),
+        next_(constant_) {}
+
+  /// Where innovations are as large as expected.
+  double constant() const { return constant_; }
+  /// Behind the row of the last innovation.
+  double next() const { return next_; }
+
+  /// A row's whitened innovation: unit variance is expected of each of the `count` that are there.
+  /// What is beyond three deviations is no more than that: an outlier is no reason to forget all.
+  void follow(const Eigen::VectorXd& w, int count) {
+    if (memory_ <= 0.0 || count == 0) return;
+    constexpr double most = 9.0;
+    next_ = 1.0 - w.cwiseAbs2().cwiseMin(most).sum() / count / memory_;
+  }
+
+ private:
+  double constant_;
+  double memory_;  // rows; 0: constant
+  double next_;
+};
+
 /// `method` is ekf, iekf or srif. Throws Error as track().
 Track track_jointly(const StateBlockModel& model, const Record& record, const StreamStart& start,
                     const TrackOptions& options);

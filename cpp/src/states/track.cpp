@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 
 #include "base/name_list.hpp"
 #include "base/parameter_values.hpp"
@@ -17,6 +16,7 @@
 #include "sepcal/states/filter.hpp"
 #include "sepcal/states/information_form.hpp"
 #include "sepcal/states/iterated_update.hpp"
+#include "states/band_track.hpp"
 #include "states/change_watch.hpp"
 #include "states/information_track.hpp"
 #include "states/joint_track.hpp"
@@ -69,6 +69,25 @@ void check_linearised(const TrackOptions& options) {
   if (!options.initial_states.empty()) refuse(options.initial_states.begin()->first, "state");
 }
 
+/// Of states and their covariance.
+bool is_filter(TrackMethod method) {
+  return method == TrackMethod::ekf || method == TrackMethod::iekf || method == TrackMethod::srif;
+}
+
+constexpr double least_memory = 20.0;  // rows
+
+void check_memory(const TrackOptions& options) {
+  if (options.method == TrackMethod::rml || options.method == TrackMethod::rft) {
+    throw OptionError({Option{"memory"}, " is of rls, ekf, iekf and srif; take forgetting"});
+  }
+  if (options.forgetting != 1.0) {
+    throw OptionError({Option{"memory"}, " forgets in its own way; leave forgetting out"});
+  }
+  if (!(options.memory >= least_memory) || std::isinf(options.memory)) {
+    throw OptionError({Option{"memory"}, " is in rows; give 20 or more"});
+  }
+}
+
 /// Throws OptionError for what another method takes.
 void check_of_method(const TrackOptions& options) {
   const TrackOptions by_default;
@@ -78,23 +97,29 @@ void check_of_method(const TrackOptions& options) {
                                            " alone; leave it out, or take " +
                                            std::string(to_string(method))});
   };
-  if (!options.walk.empty() &&
-      (options.method == TrackMethod::rls || options.method == TrackMethod::rml)) {
+  if (!options.walk.empty() && !is_filter(options.method)) {
     throw OptionError({Option{"walk"}, " is of ekf, iekf and srif; leave it out, or take ekf"});
   }
-  if (options.changes != TrackChanges::ignore &&
-      (options.method == TrackMethod::rls || options.method == TrackMethod::rml)) {
+  if (options.changes != TrackChanges::ignore && !is_filter(options.method)) {
     throw OptionError({Option{"changes"}, " is of ekf, iekf and srif; leave it out, or take ekf"});
   }
   if (!(options.forgetting > 0.0 && options.forgetting <= 1.0)) {
     throw OptionError(
         {Option{"forgetting"}, " is what a sample counts for after the next: above 0, at most 1"});
   }
+  if (options.memory != 0.0) check_memory(options);
+  refuse(options.differentiate, "differentiate", TrackMethod::rft);
   refuse(options.every != by_default.every, "every", TrackMethod::rml);
   refuse(options.iterations.iterations != by_default.iterations.iterations, "row_iterations",
          TrackMethod::iekf);
   refuse(options.iterations.tolerance != by_default.iterations.tolerance, "tolerance",
          TrackMethod::iekf);
+}
+
+std::vector<std::string> free_names(const StreamStart& start) {
+  std::vector<std::string> names;
+  for (const int k : start.free) names.push_back(start.names[static_cast<std::size_t>(k)]);
+  return names;
 }
 
 std::map<std::string, double> held(const StreamStart& start) {
@@ -178,6 +203,7 @@ void track_linearised(Samples& samples, const StreamStart& start, const TrackOpt
   const VectorXd x = start.xi(start.free);
   const Index n_z = samples.noise().size();
   states::InformationTrack filter(start.R);
+  states::Forgetting forgetting(options);
   for (const auto& chunk : samples.measurements().chunks()) {
     const auto carry = samples.new_carry();
     for (const auto& range : chunk) {
@@ -186,9 +212,12 @@ void track_linearised(Samples& samples, const StreamStart& start, const TrackOpt
       for (std::size_t i = 0; i < range.rows; ++i) {
         if (range.offset + i < start.rows) continue;
         const MatrixXd sample = rows.middleRows(static_cast<Index>(i) * n_z, n_z);
-        filter.forget(options.forgetting);
+        filter.forget(forgetting.next());
         const VectorXd before = filter.solution();
         const VectorXd e = sample.rightCols<1>() - sample.leftCols(x.size()) * before;
+        if (options.memory > 0.0) {
+          forgetting.follow(filter.whitened(sample), static_cast<int>(n_z));
+        }
         if (!filter.absorb(sample)) ++collected.track().refused;
         collected.append(range.first + i, x + filter.solution(), filter.deviations(),
                          e.cwiseProduct(samples.noise()));
@@ -199,57 +228,167 @@ void track_linearised(Samples& samples, const StreamStart& start, const TrackOpt
 
 /// Every sample linearised where the filter is.
 template <class Form>
-void track_filtered(Samples& samples, const Record& record, const StreamStart& start,
-                    const TrackOptions& options, Collected& collected) {
+class SampleStream {
+ public:
+  SampleStream(Samples& samples, const Record& record, const StreamStart& start,
+               const TrackOptions& options)
+      : samples_(samples),
+        record_(record),
+        start_(start),
+        options_(options),
+        nothing_(VectorXd::Zero(samples.noise().size())),
+        names_(free_names(start)),
+        walk_(states::walk_of(names_, options)),
+        watch_(record, names_, walk_.size(), options.changes),
+        forgetting_(options) {}
+
+  void run(Collected& collected) {
+    Filter<Dynamic, Form> filter(start_.xi(start_.free), Form::of_information_root(start_.R));
+    for (const auto& chunk : samples_.measurements().chunks()) {
+      for (const auto& range : chunk) {
+        for (std::size_t i = 0; i < range.rows; ++i) {
+          base::heed_stop();
+          if (range.offset + i < start_.rows) continue;
+          rows_.push_back({range.first + i, 1, range.offset + i, range.starts_segment && i == 0});
+          update(filter, collected);
+        }
+      }
+    }
+    collected.track().changes = std::move(watch_).changes();
+  }
+
+ private:
+  /// By the last of the rows.
+  void update(Filter<Dynamic, Form>& filter, Collected& collected) {
+    const std::size_t at = rows_.size() - 1;
+    step_to(filter, at, forgetting_.next());
+    const Linearisation<Dynamic, Dynamic> before = expected(at, filter.x());
+    const MatrixXd P = watch_.looks() ? filter.covariance() : MatrixXd();
+    const Innovation<Dynamic> innovation = absorb(filter, at, before);
+    forgetting_.follow(innovation.w, innovation.count);
+    collected.track().refused += innovation.status == FilterStatus::refused ? 1 : 0;
+    collected.track().not_converged += innovation.status == FilterStatus::not_converged ? 1 : 0;
+    watch_.update(
+        filter, P, before.jacobian, nothing_, innovation, rows_[at].first,
+        [&](Filter<Dynamic, Form>& anew, std::size_t count) { return run_again(anew, count); });
+    collected.append(rows_[at].first, filter.x(), filter.covariance().diagonal().cwiseSqrt(),
+                     -before.value.cwiseProduct(samples_.noise()));
+  }
+
+  /// The last rows again: V_m of them.
+  double run_again(Filter<Dynamic, Form>& filter, std::size_t count) {
+    double cost = 0.0;
+    for (std::size_t at = rows_.size() - count; at < rows_.size(); ++at) {
+      step_to(filter, at, forgetting_.constant());
+      const Innovation<Dynamic> innovation = absorb(filter, at, expected(at, filter.x()));
+      if (innovation.status != FilterStatus::refused) cost += innovation.cost();
+    }
+    return cost;
+  }
+
+  /// From the row before, which counts for `by`.
+  void step_to(Filter<Dynamic, Form>& filter, std::size_t at, double by) const {
+    if (at > 0 && !walk_.isZero(0.0)) {
+      const double seconds = states::seconds_between(record_, rows_[at - 1].first, rows_[at].first);
+      const MatrixXd same = MatrixXd::Identity(walk_.size(), walk_.size());
+      filter.predict(
+          Transition<Dynamic, Dynamic>{filter.x(), same, same, (seconds * walk_).asDiagonal()});
+    }
+    states::forget(filter, by);
+  }
+
+  /// Rows are residuals, whitened.
+  Linearisation<Dynamic, Dynamic> expected(std::size_t at, const VectorXd& x) {
+    const MatrixXd rows = samples_.rows(rows_[at], x, nullptr);
+    return {-rows.rightCols<1>(), rows.leftCols(x.size())};
+  }
+
+  /// `before`: expected() at the estimate before the row.
+  Innovation<Dynamic> absorb(Filter<Dynamic, Form>& filter, std::size_t at,
+                             const Linearisation<Dynamic, Dynamic>& before) {
+    const MatrixXd unit = MatrixXd::Identity(nothing_.size(), nothing_.size());
+    if (options_.method != TrackMethod::iekf) {
+      return filter.template update<Dynamic>(nothing_, before, unit);
+    }
+    return iterated_update<Dynamic, Form, Dynamic>(
+        filter, nothing_, [&](const VectorXd& x) { return expected(at, x); }, unit,
+        options_.iterations);
+  }
+
+  Samples& samples_;
+  const Record& record_;
+  const StreamStart& start_;
+  const TrackOptions& options_;
+  VectorXd nothing_;  // n_z zeros
+  std::vector<std::string> names_;
+  VectorXd walk_;  // variance a second
+  states::ChangeWatch watch_;
+  states::Forgetting forgetting_;
+  std::vector<model::Measurements::Range> rows_;  // that the filter has seen, one each
+};
+
+/// Throws Error where outputs have a part that is no regressor's: what is differentiated has none.
+void check_regressors_alone(Samples& samples, const model::Measurements::Range& range,
+                            const MatrixXd& rows) {
   const Index n_z = samples.noise().size();
-  const VectorXd nothing = VectorXd::Zero(n_z);  // rows are residuals, whitened
-  const MatrixXd unit = MatrixXd::Identity(n_z, n_z);
-  std::vector<std::string> names;
-  for (const int k : start.free) names.push_back(start.names[static_cast<std::size_t>(k)]);
-  const VectorXd walk = states::walk_of(names, options);
-  const bool walks = !walk.isZero(0.0);
-  const MatrixXd same = MatrixXd::Identity(walk.size(), walk.size());
-  states::ChangeWatch watch(record, names, walk.size(), options.changes);
-  std::optional<std::size_t> before;  // the row that the filter has seen last
-  Filter<Dynamic, Form> filter(start.xi(start.free), Form::of_information_root(start.R));
+  for (Index j = 0; j < n_z; ++j) {
+    const auto z = samples.measurements().output(static_cast<int>(j), range);
+    for (std::size_t i = 0; i < range.rows; ++i) {
+      const double left = rows(static_cast<Index>(i) * n_z + j, rows.cols() - 1);
+      if (std::isnan(z[i]) || std::abs(left - z[i] / samples.noise()[j]) <= 1e-12 * std::abs(left))
+        continue;
+      throw OptionError({Option{"differentiate"},
+                         " takes models of regressors alone, none of them held but at 0: no b"});
+    }
+  }
+}
+
+/// Transforms of all rows, those of the start among them.
+void track_in_band(Samples& samples, const Record& record, const StreamStart& start,
+                   const TrackOptions& options, Collected& collected) {
+  const VectorXd x = start.xi(start.free);
+  const Index n_z = samples.noise().size();
+  const auto time = record.column("time");
+  states::BandTrack filter(n_z, x, options);
   for (const auto& chunk : samples.measurements().chunks()) {
     for (const auto& range : chunk) {
+      base::heed_stop();
+      const MatrixXd rows = samples.rows(range, VectorXd::Zero(x.size()), nullptr);
+      if (options.differentiate) check_regressors_alone(samples, range, rows);
       for (std::size_t i = 0; i < range.rows; ++i) {
-        base::heed_stop();
+        const MatrixXd sample = rows.middleRows(static_cast<Index>(i) * n_z, n_z);
+        const VectorXd e = sample.rightCols<1>() - sample.leftCols(x.size()) * filter.solution();
+        const bool is_used = filter.absorb(time[range.first + i], sample);
         if (range.offset + i < start.rows) continue;
-        const model::Measurements::Range one{range.first + i, 1, range.offset + i,
-                                             range.starts_segment && i == 0};
-        if (walks && before) {
-          const double seconds = states::seconds_between(record, *before, one.first);
-          filter.predict(
-              Transition<Dynamic, Dynamic>{filter.x(), same, same, (seconds * walk).asDiagonal()});
-        }
-        before = one.first;
-        states::forget(filter, options.forgetting);
-        const auto expected = [&](const VectorXd& x) -> Linearisation<Dynamic, Dynamic> {
-          const MatrixXd rows = samples.rows(one, x, nullptr);
-          return {-rows.rightCols<1>(), rows.leftCols(x.size())};
-        };
-        const Linearisation<Dynamic, Dynamic> first = expected(filter.x());
-        const MatrixXd P = watch.looks() ? filter.covariance() : MatrixXd();
-        const Innovation<Dynamic> innovation =
-            options.method == TrackMethod::iekf
-                ? iterated_update<Dynamic, Form, Dynamic>(filter, nothing, expected, unit,
-                                                          options.iterations)
-                : filter.template update<Dynamic>(nothing, first, unit);
-        const FilterStatus status = innovation.status;
-        collected.track().refused += status == FilterStatus::refused ? 1 : 0;
-        collected.track().not_converged += status == FilterStatus::not_converged ? 1 : 0;
-        if (watch.looks()) watch.update(filter, P, first.jacobian, nothing, innovation, one.first);
-        collected.append(one.first, filter.x(), filter.covariance().diagonal().cwiseSqrt(),
-                         -first.value.cwiseProduct(samples.noise()));
+        if (!is_used) ++collected.track().refused;
+        collected.append(range.first + i, filter.solution(), filter.deviations(),
+                         options.differentiate ? VectorXd(VectorXd::Constant(n_z, not_a_number))
+                                               : VectorXd(e.cwiseProduct(samples.noise())));
       }
     }
   }
-  collected.track().changes = std::move(watch).changes();
 }
 
 }  // namespace
+
+std::vector<Variable> table_of(const Track& track, const BlockModel& model) {
+  std::vector<Variable> known = model.tables().parameters();
+  if (const auto* along = dynamic_cast<const StateBlockModel*>(&model)) {
+    const auto& states = along->plan().model().states;
+    known.insert(known.begin(), states.begin(), states.end());
+    for (const Variable& noise : along->plan().model().noise) {
+      known.emplace_back("q_" + noise.name, noise.unit);
+    }
+    for (const Variable& output : model.tables().outputs) {
+      known.emplace_back("r_" + output.name, output.unit);
+    }
+  }
+  std::vector<Variable> table;
+  for (const std::string& name : track.names) {
+    table.push_back(*std::ranges::find(known, name, &Variable::name));
+  }
+  return table;
+}
 
 Track track(const BlockModel& model, const Record& record, const StreamStart& start,
             const TrackOptions& options) {
@@ -261,6 +400,7 @@ Track track(const BlockModel& model, const Record& record, const StreamStart& st
     }
     return states::track_likelihood(*along, record, start, options);
   }
+  if (options.method == TrackMethod::rft) states::check_band_track(model, record, options);
   if (along != nullptr && options.method != TrackMethod::rls) {
     return states::track_jointly(*along, record, start, options);
   }
@@ -269,7 +409,7 @@ Track track(const BlockModel& model, const Record& record, const StreamStart& st
     check_trajectories(along->plan(), start);
   }
   check_start(model.tables(), start);
-  if (options.method != TrackMethod::rls && model.new_carry() != nullptr) {
+  if (is_filter(options.method) && model.new_carry() != nullptr) {
     throw Error("a model that carries a state of its own is tracked by rls, not by " +
                 std::string(to_string(options.method)));
   }
@@ -277,12 +417,14 @@ Track track(const BlockModel& model, const Record& record, const StreamStart& st
   base::deviations_in_order({}, options.initial_states, "state");
   Samples samples(model, record, start, states::noise_of(model.tables().outputs, start, options));
   Collected collected(record, start, model.tables().n_z());
-  if (options.method == TrackMethod::rls) {
+  if (options.method == TrackMethod::rft) {
+    track_in_band(samples, record, start, options, collected);
+  } else if (options.method == TrackMethod::rls) {
     track_linearised(samples, start, options, collected);
   } else if (options.method == TrackMethod::srif) {
-    track_filtered<InformationForm<Dynamic>>(samples, record, start, options, collected);
+    SampleStream<InformationForm<Dynamic>>(samples, record, start, options).run(collected);
   } else {
-    track_filtered<SquareRootForm<Dynamic>>(samples, record, start, options, collected);
+    SampleStream<SquareRootForm<Dynamic>>(samples, record, start, options).run(collected);
   }
   return std::move(collected.track());
 }

@@ -10,6 +10,7 @@
 #include "sepcal/detail/states/trajectory_options.hpp"
 #include "sepcal/fit.hpp"
 #include "sepcal/record.hpp"
+#include "sepcal/states/track.hpp"
 
 namespace sepcal {
 
@@ -39,5 +40,32 @@ struct TwoStep {
 /// Columns as FlightPath and aero_coefficients() take them. Throws Error as they do.
 TwoStep two_step(const Record& record, const AircraftGeometry& geometry,
                  const TwoStepOptions& options = {});
+
+/// Where both steps begin in flight: start_from_fit() of another flight's, or of first rows.
+struct TwoStepStart {
+  StreamStart path;
+  StreamStart aero;
+};
+
+/// The two steps on a record's first rows. Throws Error as two_step() does, and for too few rows.
+TwoStepStart start_two_steps(const Record& record, const AircraftGeometry& geometry,
+                             std::size_t rows, const TwoStepOptions& options = {});
+
+struct TwoStepTrack {
+  Track path;
+  Track aero;                     // its rows are the path's
+  std::vector<Variable> table;    // of path.names, then aero.names, with units
+  std::vector<Variable> outputs;  // of the path's innovations, then the coefficients'
+};
+
+/// Both steps in flight: a filter of the path, and least squares of the coefficients where it says
+/// the aircraft is. `path` and `aero` say how each is followed; a path without process noise takes
+/// that of its readings. Rates are differentiated over `window`, so that the coefficients of a row
+/// are known half a window later, unless the record has pdot qdot rdot. Throws Error as two_step()
+/// and track() do.
+TwoStepTrack track_two_steps(const Record& record, const AircraftGeometry& geometry,
+                             const TwoStepStart& start, const TwoStepOptions& options = {},
+                             TrackOptions path = {},
+                             const TrackOptions& aero = {.method = TrackMethod::rls});
 
 }  // namespace sepcal

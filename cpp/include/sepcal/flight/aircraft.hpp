@@ -178,6 +178,11 @@ SmoothedRecord smooth_aircraft(const AircraftFit& fitted, const Flight& flight,
 TrackedFlight track_aircraft(const AircraftFit& fitted, const Flight& flight,
                              const FlightTrackOptions& options = {});
 
+/// The path followed by a filter, and the aerodynamics where it says the aircraft is, row by row:
+/// from two steps of another flight, or from `start_rows`. Throws Error as track_aircraft() does.
+TrackedFlight track_two_steps(const TwoStepFit& fitted, const Flight& flight,
+                              const FlightTrackOptions& options = {});
+
 std::string to_text(const AircraftFit& fitted, Detail detail = Detail::brief);
 std::string to_json(const AircraftFit& fitted);
 std::string to_text(const StepwiseAircraft& result, Detail detail = Detail::brief);
@@ -187,10 +192,12 @@ std::string to_json(const TwoStepFit& fitted);
 std::string to_text(const Applied& applied, const AircraftFit& fitted);
 std::string to_json(const Applied& applied, const AircraftFit& fitted);
 
-/// Reads what to_json() wrote; of two steps the path or the aerodynamics, where `part` names it.
-/// Throws Error for anything else.
+/// Reads what to_json() wrote. Throws Error for anything else.
 AircraftFit parse_aircraft_fit(std::string_view json, const std::string& source);
 AircraftFit read_aircraft_fit(const std::string& file);
+
+/// The same of two steps; nothing where the file is no such fit.
+std::optional<TwoStepFit> read_two_step_fit(const std::string& file);
 
 /// The regressors that each coefficient has by itself, and how others are written.
 std::string aircraft_effects_text();

@@ -22,6 +22,9 @@ struct FlightTrackOptions {
   /// others begin as the calibration has them, of another flight, and every row is followed. Empty:
   /// the first rows alone tell all.
   std::vector<std::string> own = {};
+  /// Of two steps: how the second follows the coefficients; `how` is of the path then, but for its
+  /// forgetting, memory, band and changes, and walks of coefficients, which are the second's.
+  TrackMethod second = TrackMethod::rls;
 };
 
 /// Estimates against time along a flight.

@@ -46,6 +46,10 @@ struct Jump {
   /// 1 in row j, column k where a jump of k in place of j explains the innovations nearly as well.
   Eigen::Matrix<Scalar, K, K> rivals = states::zeros<Eigen::Matrix<Scalar, K, K>>();
   Eigen::Vector<Scalar, N> moved = states::zeros<Eigen::Vector<Scalar, N>>();  // s, by `size`
+  /// For a filter that can go back to the onset: by what the parameters move there, rivals among
+  /// them, and how far each may be off that, 0 where it didn't jump.
+  Parameters opened = states::zeros<Parameters>();
+  Parameters reach = states::zeros<Parameters>();
   /// What a filter that follows takes, with the rivals open too: s moves by shift, and its
   /// covariance grows by spread'spread.
   Eigen::Vector<Scalar, N> shift = states::zeros<Eigen::Vector<Scalar, N>>();
@@ -313,7 +317,8 @@ class ChangeTest {
     Information U = told.covariance_root(chosen, by, nonlinear * jump.size);
     jump.deviation = U.colwise().norm();
     jump.shift = jump.moved;
-    Parameters reach = jump.size.cwiseAbs();  // of what may have jumped in place of another
+    jump.opened = jump.size;
+    jump.reach = jump.size.cwiseAbs();
     jump.rivals.setZero(k_, k_);
     for (Eigen::Index j = 0; j < k_; ++j) {
       for (Eigen::Index k = 0; k < k_; ++k) {
@@ -324,19 +329,20 @@ class ChangeTest {
         if (jump.statistic - explained(onset, other) >= static_cast<Scalar>(options_.join))
           continue;
         jump.rivals(j, k) = 1;
-        reach[k] = std::max(reach[k], std::abs(Told(onset, other, none()).size()[k]));
+        const Scalar alone = std::abs(Told(onset, other, none()).size()[k]);
+        jump.reach[k] = std::max(jump.reach[k], alone);
       }
     }
     if (jump.is_ambiguous()) {  // all that may have jumped, each by no more than would do alone
-      const Parameters open = (reach.array() > Scalar(0)).template cast<Scalar>();
+      const Parameters open = (jump.reach.array() > Scalar(0)).template cast<Scalar>();
       Parameters prior = none();
       for (Eigen::Index k = 0; k < k_; ++k) {
-        if (reach[k] > Scalar(0)) prior[k] = by / (reach[k] * reach[k]);
+        if (open[k] != Scalar(0)) prior[k] = by / (jump.reach[k] * jump.reach[k]);
       }
       const Told together(onset, open, prior);
-      const Parameters size = together.size();
-      jump.shift = states::product(onset.E, size);
-      U = together.covariance_root(open, by, nonlinear * size);
+      jump.opened = together.size();
+      jump.shift = states::product(onset.E, jump.opened);
+      U = together.covariance_root(open, by, nonlinear * jump.opened);
     }
     jump.spread = states::product(U, onset.E.transpose());
     return jump;

@@ -7,6 +7,7 @@
 
 #include "sepcal/detail/states/compiled_trajectories.hpp"
 #include "sepcal/record.hpp"
+#include "sepcal/states/track.hpp"
 
 namespace sepcal {
 
@@ -16,5 +17,10 @@ namespace sepcal {
 /// are added. NaN outside segments.
 Record reconstruct(const TrajectoryModel<FlightPath>& model,
                    const std::map<std::string, double>& parameters, const Record& record);
+
+/// The same as a filter on the vehicle knows it at every row of a track of this model and record:
+/// by the states and biases of that row. Segments are what the track has of them.
+Record reconstruct(const TrajectoryModel<FlightPath>& model, const Track& track,
+                   const Record& record);
 
 }  // namespace sepcal

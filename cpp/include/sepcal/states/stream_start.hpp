@@ -23,8 +23,8 @@ struct StreamStart {
   Eigen::MatrixXd R;      // k x k, upper triangular: (R'R)^-1 is the covariance of xi(free)
   Eigen::VectorXd noise;  // n_z standard deviations of the outputs
   std::vector<std::string> outputs = {};  // their names; of none, in the model's order
-  /// Roots of the process noises' densities (n_w, in the table's order): filter error's. Else
-  /// empty.
+  /// Roots of the process noises' densities (n_w, in the table's order) that the start allows for:
+  /// filter error's. Else empty.
   Eigen::VectorXd process_noise = {};
   std::size_t rows = 0;  // of the record's segments, in order, that went into it
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "sepcal/detail/band.hpp"
 #include "sepcal/detail/choices.hpp"
 #include "sepcal/states/iterated_update.hpp"
 #include "sepcal/states/stream_start.hpp"
@@ -24,11 +25,13 @@ enum class TrackMethod {
   srif,  // the extended filter as square-root information
   rml,   // recursive maximum likelihood: sizes of the noises are estimated too. Of models with a
          // state, from a start by filter error
+  rft    // recursive Fourier transform: equation error over a band. Of models that are linear
 };
 
 template <>
 struct ChoiceNames<TrackMethod> {
-  static constexpr std::array<std::string_view, 5> names{"rls", "ekf", "iekf", "srif", "rml"};
+  static constexpr std::array<std::string_view, 6> names{"rls",  "ekf", "iekf",
+                                                         "srif", "rml", "rft"};
 };
 
 /// What becomes of a parameter that jumps on the way: see ChangeTest.
@@ -64,8 +67,18 @@ struct TrackOptions {
   /// way, as good as unknown.
   std::map<std::string, double> initial_states = {};
   IterationOptions iterations = {};  // of iekf
-  double forgetting = 1.0;  // of rml: what a sample counts for after the next, above 0, at most 1
-  int every = 10;           // of rml: samples from a step of the parameters to the next
+  /// What a sample counts for after the next, above 0, at most 1.
+  double forgetting = 1.0;
+  /// Of rls, ekf, iekf and srif: forgetting that follows the innovations, in place of a constant
+  /// one (T. R. Fortescue, L. S. Kershenbaum & B. E. Ydstie, Implementation of self-tuning
+  /// regulators with variable forgetting factors, Automatica 17, 1981). So many rows count while
+  /// innovations are as large as expected, fewer where they are larger; at least 20. 0: none.
+  double memory = 0.0;
+  int every = 10;  // of rml: samples from a step of the parameters to the next
+  /// Of rft; spacing 0 is 0.05 Hz.
+  Band band = {};
+  /// Of rft: outputs hold what the model gives the derivatives of.
+  bool differentiate = false;
 };
 
 struct ParameterChange {
@@ -100,6 +113,9 @@ struct Track {
   std::size_t refused = 0;              // rows that were not finite, left out
   std::size_t not_converged = 0;        // rows at which iekf's cap ended it
 };
+
+/// The track's names with their units, as its model has them.
+std::vector<Variable> table_of(const Track& track, const BlockModel& model);
 
 /// Goes on where `start` ends, after start.rows rows. Outputs that are NaN are missing. A model
 /// with a state is one for this record; it starts by start_from_rows(), or from another flight's

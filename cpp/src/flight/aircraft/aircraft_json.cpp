@@ -121,6 +121,10 @@ AircraftFit read_fitted(const Json& root) {
   return fitted;
 }
 
+bool has_two_steps(const Json& root) {
+  return root.is_object() && root.contains("path") && root.contains("aero");
+}
+
 }  // namespace
 
 std::string to_json(const AircraftFit& fitted) { return text_of(write_fitted(fitted)); }
@@ -155,10 +159,10 @@ AircraftFit parse_aircraft_fit(std::string_view json, const std::string& source)
     throw Error(fmt::format("{} is no fit of an aircraft; give the JSON that fit wrote with -o{}",
                             source, json.empty() ? " (it is empty)" : ""));
   }
-  if (root.contains("path") && root.contains("aero")) {
+  if (has_two_steps(root)) {
     throw Error(fmt::format(
-        "{} holds two steps, a path and its aerodynamics; fit one of them alone, with --model path "
-        "or --model aero, to go on with it",
+        "{} holds two steps, a path and its aerodynamics, which track alone goes on with; fit one "
+        "of them alone, with --model path or --model aero",
         source));
   }
   if (!root.contains("aircraft")) {
@@ -175,6 +179,15 @@ AircraftFit parse_aircraft_fit(std::string_view json, const std::string& source)
   } catch (const Error& error) {
     throw_within(source + " is damaged: ", error, "; fit the flight again");
   }
+}
+
+std::optional<TwoStepFit> read_two_step_fit(const std::string& file) {
+  const std::string text =
+      files::read_text_file(file, "as a fit; give the JSON that two-step wrote with -o");
+  const Json root = files::parse_json(text, file);
+  if (!has_two_steps(root)) return std::nullopt;
+  return TwoStepFit{.path = parse_aircraft_fit(root.at("path").dump(), file),
+                    .aero = parse_aircraft_fit(root.at("aero").dump(), file)};
 }
 
 AircraftFit read_aircraft_fit(const std::string& file) {

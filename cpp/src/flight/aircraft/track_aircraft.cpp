@@ -6,6 +6,7 @@
 
 #include "flight/aircraft/laid_aircraft.hpp"
 #include "flight/tracks/tracked_rows.hpp"
+#include "sepcal/aircraft/two_step.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft.hpp"
 
@@ -44,24 +45,49 @@ StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const Laid
   return start_from_rows(*batch.model, readings_of(laid), rows, batch.fit);
 }
 
-/// Names with their units: states first, then parameters.
-std::vector<Variable> table_of(const Track& track, const BlockModel& model) {
-  std::vector<Variable> known = model.tables().parameters();
-  if (const auto* along = dynamic_cast<const StateBlockModel*>(&model)) {
-    const auto& states = along->plan().model().states;
-    known.insert(known.begin(), states.begin(), states.end());
-    for (const Variable& noise : along->plan().model().noise) {
-      known.emplace_back("q_" + noise.name, noise.unit);
-    }
-    for (const Variable& output : model.tables().outputs) {
-      known.emplace_back("r_" + output.name, output.unit);
-    }
+bool is_filter(TrackMethod method) {
+  return method == TrackMethod::ekf || method == TrackMethod::iekf || method == TrackMethod::srif;
+}
+
+/// Of the path: all but what is of the coefficients.
+TrackOptions first_of(const FlightTrackOptions& options, const Fit& aero) {
+  TrackOptions path = options.how;
+  path.changes = TrackChanges::ignore;
+  path.forgetting = 1.0;
+  path.memory = 0.0;
+  path.band = {};
+  for (const Parameter& parameter : aero.parameters) path.walk.erase(parameter.name);
+  return path;
+}
+
+TrackOptions second_of(const FlightTrackOptions& options, const Fit& aero) {
+  TrackOptions second{.method = options.second,
+                      .changes = options.how.changes,
+                      .forgetting = options.how.forgetting,
+                      .memory = options.how.memory,
+                      .band = options.how.band};
+  for (const Parameter& parameter : aero.parameters) {
+    const auto walk = options.how.walk.find(parameter.name);
+    if (walk != options.how.walk.end()) second.walk.insert(*walk);
   }
-  std::vector<Variable> table;
-  for (const std::string& name : track.names) {
-    table.push_back(*std::ranges::find(known, name, &Variable::name));
-  }
-  return table;
+  return second;
+}
+
+/// One track of both: the path's columns, then those of the coefficients, at the rows of both.
+Track side_by_side(Track path, Track aero) {
+  const auto join = [](Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
+    const Eigen::Index before = left.cols();
+    left.conservativeResize(Eigen::NoChange, before + right.cols());
+    left.rightCols(right.cols()) = right;
+  };
+  path.names.insert(path.names.end(), aero.names.begin(), aero.names.end());
+  join(path.estimates, aero.estimates);
+  join(path.standard_deviations, aero.standard_deviations);
+  join(path.innovations, aero.innovations);
+  path.changes = std::move(aero.changes);
+  path.refused += aero.refused;
+  path.not_converged += aero.not_converged;
+  return path;
 }
 
 }  // namespace
@@ -86,6 +112,52 @@ TrackedFlight track_aircraft(const AircraftFit& fitted, const Flight& flight,
                           .notes = laid.notes};
     tracked.table = table_of(tracked.track, *laid.model);
     tracks::set_flight_rows(tracked, laid.flight_rows);
+    tracks::note_colour(tracked);
+    return tracked;
+  });
+}
+
+TrackedFlight track_two_steps(const TwoStepFit& fitted, const Flight& flight,
+                              const FlightTrackOptions& options) {
+  if (options.second == TrackMethod::rml || options.second == TrackMethod::iekf) {
+    throw OptionError({Option{"second"}, " is rls, ekf, srif or rft: coefficients are linear"});
+  }
+  if (!is_filter(options.how.method)) {
+    throw OptionError({Option{"method"}, " of two steps is the path's: ekf, iekf or srif"});
+  }
+  const bool is_own = is_same_flight(fitted.path, flight);
+  if (options.start_rows == 0 && is_own) {
+    throw Error(
+        "the fit is of this flight, whose rows must not count twice; start from its first ones, "
+        "by --start-rows N (start_rows=N)");
+  }
+  const AircraftOptions path = options_on(fitted.path, flight);
+  const ProbeRecord prepared = prepare(flight, AircraftModel::six_dof, path.calibration.log, false);
+  return within(flight, [&] {
+    TwoStepOptions steps{.equations = fitted.aero.equations,
+                         .path = path.trajectory,
+                         .gravity = path.gravity,
+                         .window = fitted.aero.options.window,
+                         .path_fit = path.calibration.fit,
+                         .free = path.calibration.free};
+    if (!options.how.noise.empty()) steps.path_fit.noise = options.how.noise;
+    if (!options.how.process_noise.empty()) {
+      steps.path_fit.process_noise = options.how.process_noise;
+    }
+    const AircraftGeometry& geometry = geometry_of(fitted.aero.options);
+    const TwoStepStart start =
+        options.start_rows > 0
+            ? start_two_steps(prepared.record, geometry, options.start_rows, steps)
+            : TwoStepStart{start_from_fit(fitted.path.fit), start_from_fit(fitted.aero.fit)};
+    TwoStepTrack found =
+        track_two_steps(prepared.record, geometry, start, steps, first_of(options, fitted.aero.fit),
+                        second_of(options, fitted.aero.fit));
+    TrackedFlight tracked{.track = side_by_side(std::move(found.path), std::move(found.aero)),
+                          .table = std::move(found.table),
+                          .outputs = std::move(found.outputs),
+                          .file = flight.name(),
+                          .notes = prepared.notes};
+    tracks::set_flight_rows(tracked, prepared.flight_rows);
     tracks::note_colour(tracked);
     return tracked;
   });
