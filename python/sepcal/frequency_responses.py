@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from sepcal.arguments import checked
 from sepcal.bands import RIGID, to_band
 from sepcal.columns import Array
 from sepcal.flight import AnyFlight, to_flight
+from sepcal.plots import Backend, Theme
 from sepcal.states_module import states_module
 from sepcal.whole_files import name_of
 
@@ -86,6 +87,30 @@ class FrequencyResponse:
             'frequency_hz'
         """
         self._core.save(name_of(file))
+
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws magnitude, phase and coherence of every input, with where the truth lies.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: The library is not installed.
+
+        Example:
+            >>> flight = sepcal.datasets.load("aircraft")
+            >>> of, to = "elevator_rad", "q_radps"
+            >>> found = sepcal.frequency_response(flight, of, to, window=2, band=(1, 3))
+            >>> drawn = found.plot(backend="matplotlib")
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_bands import picture_response
+
+        return as_figure(picture_response(self), backend, theme)
 
     def __repr__(self) -> str:
         return self._core.to_text()

@@ -6,13 +6,14 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sepcal.arguments import checked
 from sepcal.bands import RIGID, to_band
 from sepcal.columns import Array
+from sepcal.plots import Backend, Theme
 from sepcal.states_module import states_module
 from sepcal.whole_files import name_of
 
@@ -61,6 +62,28 @@ class InputDesign:
             'time_s,elevator_rad'
         """
         self._core.save(name_of(file))
+
+    def plot(self, *, backend: Backend = "plotly", theme: Theme = "light") -> Any:  # noqa: ANN401
+        """Draws every signal over time.
+
+        Args:
+            backend: "plotly", or "matplotlib".
+            theme: "light" or "dark".
+
+        Returns:
+            A plotly.graph_objects.Figure, or a matplotlib.figure.Figure.
+
+        Raises:
+            Error: The library is not installed.
+
+        Example:
+            >>> made = sepcal.multisines({"elevator_rad": 0.05}, duration=10)
+            >>> drawn = made.plot(backend="matplotlib")
+        """
+        from sepcal.plotting import as_figure
+        from sepcal.plotting.of_bands import picture_design
+
+        return as_figure(picture_design(self), backend, theme)
 
     def __repr__(self) -> str:
         return self._core.to_text()

@@ -50,6 +50,11 @@ def make(kind: str) -> list[tuple[object, tuple[str, ...]]]:
             (path, ("fit", "channels", "correlation")),
             (path.smooth(PATH_NOISE), ("states", "innovations", "process noise")),
             (path.track(start_rows=200), ("estimates", "innovations")),
+            (
+                sepcal.frequency_response(flight, "elevator_rad", "q_radps", window=2, band=(1, 3)),
+                (),
+            ),
+            (sepcal.multisines({"elevator_rad": 0.05, "rudder_rad": 0.1}, duration=10), ()),
         ]
     trial = sepcal.SimulatedTrial(sepcal.PitotStatic(), simulation={"rows": 100})
     study = sepcal.monte_carlo(trial, 12, progress=False)
