@@ -53,7 +53,7 @@ void TrackArguments::add_to_sensor(CLI::App& verb) {
                  "standard deviation of an output; else the start's; may be repeated");
   verb.add_option(
           "--own", own_,
-          "with --start-rows: parameters of this flight alone, as its wind; the others begin "
+          "with --start-rows: parameters of this flight alone, as \"wind\"; the others begin "
           "as the calibration has them")
       ->type_name("P,P");
 }

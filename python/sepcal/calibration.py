@@ -215,8 +215,9 @@ class Calibration(Fit):
             flight: By default the fitted one, which needs start_rows.
             start_rows: Fits so many first rows and goes on after them; 0: from this calibration,
                 which must be of another flight.
-            own: With start_rows, parameters of the flight alone, as its wind; all others begin as
-                this calibration has them, of another flight. None: the rows alone tell.
+            own: With start_rows, parameters of the flight alone, as "wind", all of its components;
+                all others begin as this calibration has them, of another flight. None: the rows
+                alone tell.
             method: As of sepcal.track().
             noise: Standard deviation of every output, in the first rows too [the start's].
             walk: Random walks of parameters, as of sepcal.track().

@@ -64,7 +64,7 @@ def test_another_flight_has_a_wind_of_its_own(method: str) -> None:
     assert track.standard_deviation("s_va")[-1] < base["s_va"].standard_error
     assert not any("--own" in note for note in track.notes)
     shared = base.track(windy)
-    assert any("--start-rows N --own w_n,w_e" in note for note in shared.notes)
+    assert any("--start-rows N --own wind" in note for note in shared.notes)
     assert abs(shared["w_n"][0] - 6.0) > 10 * shared.standard_deviation("w_n")[0]  # what it says
 
 
@@ -102,7 +102,7 @@ def test_the_program_writes_the_same(tmp_path: Path) -> None:
     other, out = str(tmp_path / "other.csv"), str(tmp_path / "track.csv")
     pitot = partial(run, "sepcal-pitot", folder=tmp_path)
     assert pitot("fit", one, "--probe", "pitot-static", "-o", base).code == 0
-    done = pitot("track", other, base, "--own", "w_n,w_e", "--start-rows", "300",
+    done = pitot("track", other, base, "--own", "wind", "--start-rows", "300",
                "--changes", "follow",
                "--noise", "airspeed=0.3", "--walk", "w_n=0.01", "-o", out, "--json")  # fmt: skip
     assert done.code == 0, done.err
@@ -145,3 +145,22 @@ def test_a_magnetometer_is_followed() -> None:
     track = base.track(start_rows=500)
     for name in track.names:
         assert abs(track[name][-1] - base[name].value) < 0.5 * base[name].standard_error
+
+
+def test_a_drift_is_named_with_the_walk_that_follows_it() -> None:
+    base = sepcal.fit(sepcal.Magnetometer(), sepcal.simulate("magnetometer", rows=3000, seed=1))
+    steady = sepcal.simulate("magnetometer", rows=6000, seed=2)
+    columns = {name: np.asarray(steady[name]) for name in steady}
+    columns["mx_ut"] = columns["mx_ut"] + 3.0 * np.arange(6000) / 6000.0
+    flight = sepcal.Flight(columns)
+    track = base.track(flight, changes="follow")
+    said = [note for note in track.notes if "it drifts" in note]
+    assert len(said) == 1
+    assert said[0].startswith("n_x jumped")
+    assert "always up" in said[0]
+    size = float(said[0].rpartition("=")[2])
+    walks = base.track(flight, walk={"n_x": size})
+    truth = (steady.truth["n_x"] + 3.0 * np.arange(6000) / 6000.0)[track.rows]
+    for row in (3000, 4000, 5999):
+        assert abs(walks["n_x"][row] - truth[row]) < 4 * walks.standard_deviation("n_x")[row]
+    assert not [note for note in base.track(steady, changes="follow").notes if "drifts" in note]

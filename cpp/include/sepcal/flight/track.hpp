@@ -18,9 +18,9 @@ struct FlightTrackOptions {
   /// Stages one and two on so many first rows, and on after them; 0: from the calibration of
   /// another flight.
   std::size_t start_rows = 0;
-  /// Of a probe: parameters of this flight alone, as a wind, whose size the first rows tell; all
-  /// others begin as the calibration has them, of another flight, and every row is followed. Empty:
-  /// the first rows alone tell all.
+  /// Of a probe: parameters of this flight alone, as a "wind" (w_n, w_e, w_d), whose size the first
+  /// rows tell; all others begin as the calibration has them, of another flight, and every row is
+  /// followed. Empty: the first rows alone tell all.
   std::vector<std::string> own = {};
   /// Of two steps: how the second follows the coefficients; `how` is of the path then, but for its
   /// forgetting, memory, band and changes, and walks of coefficients, which are the second's.

@@ -113,6 +113,7 @@ TrackedFlight track_aircraft(const AircraftFit& fitted, const Flight& flight,
     tracked.table = table_of(tracked.track, *laid.model);
     tracks::set_flight_rows(tracked, laid.flight_rows);
     tracks::note_colour(tracked);
+    tracks::note_drift(tracked);
     return tracked;
   });
 }
@@ -159,6 +160,7 @@ TrackedFlight track_two_steps(const TwoStepFit& fitted, const Flight& flight,
                           .notes = prepared.notes};
     tracks::set_flight_rows(tracked, prepared.flight_rows);
     tracks::note_colour(tracked);
+    tracks::note_drift(tracked);
     return tracked;
   });
 }

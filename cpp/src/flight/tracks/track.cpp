@@ -72,7 +72,7 @@ StreamStart with_own(const Calibration& calibration, const EffectiveFlight& effe
 }
 
 StreamStart start_of(const Calibration& calibration, const Flight& flight,
-                     const EffectiveFlight& effective, const FlightTrackOptions& options) {
+                     const EffectiveFlight& effective, FlightTrackOptions options) {
   if (!flight.sha256().empty() && flight.sha256() == calibration.flight.sha256 &&
       (options.start_rows == 0 || !options.own.empty())) {
     throw OptionError(
@@ -91,6 +91,10 @@ StreamStart start_of(const Calibration& calibration, const Flight& flight,
   fit.noise = options.how.noise;
   fit.stage_one_segments.clear();  // of the calibration's own flight
   fit.stage_two_segments.clear();
+  if (const auto wind = std::ranges::find(options.own, "wind"); wind != options.own.end()) {
+    const std::vector<std::string> components = resolve_own(*calibration.probe, {"wind"});
+    options.own.insert(options.own.erase(wind), components.begin(), components.end());
+  }
   if (!options.own.empty()) return with_own(calibration, effective, std::move(fit), options);
   return start_from_rows(*effective.model, effective.prepared.record, options.start_rows, fit);
 }
@@ -119,7 +123,7 @@ TrackedFlight track(const Calibration& calibration, const Flight& flight,
     tracked.notes.emplace_back(
         "every parameter begins as the calibration has it, the wind of its flight too; find what "
         "is "
-        "this flight's own in its first rows: --start-rows N --own w_n,w_e");
+        "this flight's own in its first rows: --start-rows N --own wind");
   }
   const StreamStart start = start_of(calibration, flight, effective, options);
   tracked.track = sepcal::track(*effective.model, record, start, options.how);
@@ -128,6 +132,7 @@ TrackedFlight track(const Calibration& calibration, const Flight& flight,
   }
   tracks::set_flight_rows(tracked, prepared.readings.flight_rows);
   tracks::note_colour(tracked);
+  tracks::note_drift(tracked);
   return tracked;
 }
 

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace sepcal::tracks {
 
@@ -52,6 +55,36 @@ void note_colour(TrackedFlight& tracked) {
         "deviations are too small, by a factor of up to {:.2g}; let what moves walk (--walk "
         "NAME=SD), or take every n-th row",
         tracked.outputs[j].name, r, std::sqrt((1.0 + r) / std::max(1e-3, 1.0 - r))));
+  }
+}
+
+void note_drift(TrackedFlight& tracked) {
+  constexpr std::size_t fewest = 3;
+  struct Jumps {
+    std::vector<double> sizes;
+    double first = 0.0;  // s, of the first onset
+    double last = 0.0;   // s, where the last was found
+  };
+  std::map<std::string, Jumps> all;
+  for (const Change& change : tracked.track.changes) {
+    for (const ParameterChange& moved : change.parameters) {
+      Jumps& jumps = all[moved.name];
+      if (jumps.sizes.empty()) jumps.first = change.onset_time;
+      jumps.sizes.push_back(moved.after - moved.before);
+      jumps.last = change.found_time;
+    }
+  }
+  for (const auto& [name, jumps] : all) {
+    const auto up = static_cast<std::size_t>(
+        std::ranges::count_if(jumps.sizes, [](double size) { return size > 0.0; }));
+    const double seconds = jumps.last - jumps.first;
+    if (jumps.sizes.size() < fewest || (up != 0 && up != jumps.sizes.size())) continue;
+    if (!(seconds > 0.0)) continue;  // a record without time, too
+    double squares = 0.0;
+    for (const double size : jumps.sizes) squares += size * size;
+    tracked.notes.push_back(fmt::format(
+        "{} jumped {} times, always {}: it drifts; let it walk, --walk {}={:.2g}", name,
+        jumps.sizes.size(), up > 0 ? "up" : "down", name, std::sqrt(squares / seconds)));
   }
 }
 

@@ -16,4 +16,7 @@ void set_flight_rows(TrackedFlight& tracked, const std::vector<std::size_t>& fli
 /// takes each row for news, and its standard deviations are too small.
 void note_colour(TrackedFlight& tracked);
 
+/// Adds a note where a parameter jumped three times or more, always the same way: it drifts.
+void note_drift(TrackedFlight& tracked);
+
 }  // namespace sepcal::tracks
