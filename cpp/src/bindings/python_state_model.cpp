@@ -300,10 +300,10 @@ class PythonStateModel::Steps final : public StateSteps {
       step.x = arrays[0].cast<VectorXd>();
       step.Phi = slopes.leftCols(n_x());
       step.Pi = acting(slopes).rightCols(acting_count());
-      step.Phi_slopes = acting(in_columns(flatten(arrays[3].cast<Numbers>())));
+      step.Phi_slopes = acting(in_columns(flatten(arrays[3].cast<Numbers>()))).transpose();
       noise.G = arrays[2].cast<MatrixXd>();
       noise.constant = false;
-      noise.slopes = acting(in_columns(flatten(arrays[4].cast<Numbers>())));
+      noise.slopes = acting(in_columns(flatten(arrays[4].cast<Numbers>()))).transpose();
     }
     add_noise(step, noise, duration(row), plan_.discrete());
     return step;
@@ -333,7 +333,7 @@ class PythonStateModel::Steps final : public StateSteps {
     reading.z = arrays[0].cast<VectorXd>()(outputs);
     reading.H = slopes.leftCols(n_x());
     reading.J = acting(slopes).rightCols(acting_count());
-    reading.H_slopes = acting(curvatures);
+    reading.H_slopes = acting(curvatures).transpose();
     return reading;
   }
 

@@ -92,6 +92,32 @@ void find_bounds(const Scoring& scoring, Scored& at) {
   }
 }
 
+/// Whether noise i, an end of theta's, is on its way to its floor: its logarithm falls as far as a
+/// step may take it, or falls again by a length that V_m doesn't shorten, as where the others
+/// explain an output completely.
+bool is_sinking(double step, double last) {
+  constexpr double all_the_way = -0.999;
+  constexpr double steadily = -0.3;
+  return step <= all_the_way || (step <= steadily && last <= steadily);
+}
+
+/// The point `to` with the noises that are on their way at their floors; empty where none is.
+VectorXd sunk(const Scoring& scoring, const VectorXd& to, const VectorXd& step,
+              const VectorXd& last) {
+  const Index logarithms = scoring.model.size() - scoring.model.noises() - scoring.model.outputs();
+  VectorXd result = to;
+  bool any = false;
+  for (Index i = 0; i < step.size(); ++i) {
+    const Index place = scoring.free[static_cast<std::size_t>(i)];
+    const double floor = scoring.box.lower[place];
+    if (place < logarithms || !std::isfinite(floor) || to[place] <= floor) continue;
+    if (!is_sinking(step[i], last.size() == 0 ? 0.0 : last[i])) continue;
+    result[place] = floor;
+    any = true;
+  }
+  return any ? result : VectorXd();
+}
+
 /// Below this two values of V_m can't be told apart.
 double resolution(const Scored& at) {
   return 1e-13 * (std::abs(at.cost) + static_cast<double>(at.readings));
@@ -126,6 +152,8 @@ Scored score_at(const Scoring& scoring, const VectorXd& theta) {
 Scored minimise_by_scoring(const Scoring& scoring, const VectorXd& theta) {
   Scored at = score_at(scoring, scoring.box.clip(theta));
   double damping = 0.0;
+  VectorXd last;             // step, of the free ones
+  double left_before = 0.0;  // of what the last step, where that was a whole one, promised
   for (int iteration = 0; std::isfinite(at.cost) && iteration < scoring.iterations; ++iteration) {
     if (scoring.progress) scoring.progress(iteration);
     const double left = find_step(scoring, at, 0.0).promise;
@@ -133,20 +161,43 @@ Scored minimise_by_scoring(const Scoring& scoring, const VectorXd& theta) {
       at.converged = true;
       break;
     }
+    // Steps contract, and the next one is too short to tell from none.
+    const double ratio = left_before > 0.0 ? left / left_before : 1.0;
+    constexpr double contracting = 0.1;
+    const bool is_last = ratio < contracting && left * ratio <= scoring.promise;
     constexpr double most_damping = 1e8;
     Scored next;
+    VectorXd taken;
     bool lower = false;
+    bool whole = false;
     while (!lower && damping <= most_damping) {
       const Step step = find_step(scoring, at, damping);
-      const VectorXd to = moved(scoring, at.theta, step.x);
+      VectorXd to = moved(scoring, at.theta, step.x);
       const double before = whole_cost(scoring, at.cost, at.theta);
       // What V_m can't resolve any more the gradient still does.
       const double slack = step.promise < resolution(at) ? resolution(at) : 0.0;
-      const double after = whole_cost(scoring, scoring.model.value(to).cost, to);
+      double after = whole_cost(scoring, scoring.model.value(to).cost, to);
       lower = after <= before - 1e-4 * step.promise + slack;
+      whole = lower && damping == 0.0;
+      if (is_last && whole) {
+        at.theta = to;
+        at.cost = after - 0.5 * prior_of(scoring).square(to(scoring.free));
+        at.converged = true;
+        ++at.iterations;
+        return at;
+      }
+      if (const VectorXd floored = sunk(scoring, to, step.x, last); lower && floored.size() > 0) {
+        const double there = whole_cost(scoring, scoring.model.value(floored).cost, floored);
+        if (there < after) {
+          to = floored;
+          after = there;
+          whole = false;
+        }
+      }
       if (lower) {
         next = score_at(scoring, to);
         lower = std::isfinite(next.cost);
+        taken = to(scoring.free) - at.theta(scoring.free);
       }
       damping = lower ? damping * 0.1 : std::max(damping * 10.0, 1e-3);
     }
@@ -155,6 +206,8 @@ Scored minimise_by_scoring(const Scoring& scoring, const VectorXd& theta) {
       break;
     }
     if (damping < 1e-6) damping = 0.0;
+    left_before = whole ? left : 0.0;
+    last = taken;
     const int count = at.iterations + 1;
     at = std::move(next);
     at.iterations = count;

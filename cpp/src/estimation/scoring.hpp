@@ -20,7 +20,8 @@ struct Scoring {
   numerics::Box box;               // of theta
   Prior prior;                     // of theta, weight 0: none
   int iterations = 100;            // at most
-  /// Ends where a step within the bounds promises to lower V_m by no more.
+  /// Ends where a step within the bounds promises to lower V_m by no more, or the step after it
+  /// would, by how steps contract: its factor is then that of a step before.
   double promise = 1e-13;
   std::function<void(int iteration)> progress = {};  // may be empty
 };
@@ -42,7 +43,8 @@ double cost_with_prior(const Scoring& scoring, const Scored& at);
 /// theta's factor at a point, no step taken.
 Scored score_at(const Scoring& scoring, const Eigen::VectorXd& theta);
 
-/// From theta, which is clipped to the box. Logarithms of noises move by at most 1 a step.
+/// From theta, which is clipped to the box. Logarithms of noises move by at most 1 a step; one that
+/// falls and falls goes to its lower bound at once where V_m is lower there.
 Scored minimise_by_scoring(const Scoring& scoring, const Eigen::VectorXd& theta);
 
 /// V_m's second derivatives (k x k) by central differences of the gradient, with the prior's, at

@@ -284,9 +284,9 @@ StateSteps::SecondOrderStep ComposedSteps::advance_to_second_order(std::size_t r
   const std::vector<Index> places = own_acting();
   const auto acting = static_cast<Index>(model_.plan().acting_columns().size());
   const auto widen = [&](const MatrixXd& slopes) {
-    MatrixXd wide = MatrixXd::Zero(slopes.rows(), n_x() + acting);
-    wide.leftCols(n_x()) = slopes.leftCols(n_x());
-    wide.rightCols(acting)(Eigen::all, places) = slopes.rightCols(slopes.cols() - n_x());
+    MatrixXd wide = MatrixXd::Zero(n_x() + acting, slopes.cols());
+    wide.topRows(n_x()) = slopes.topRows(n_x());
+    wide.bottomRows(acting)(places, Eigen::all) = slopes.bottomRows(slopes.rows() - n_x());
     return wide;
   };
   SecondOrderStep step{.x = own.x,
@@ -305,8 +305,8 @@ StateSteps::SecondOrderStep ComposedSteps::advance_to_second_order(std::size_t r
       return all;
     });
     step.Pi.col(place) = slopes.head(n_x());
-    step.Phi_slopes.col(n_x() + place) = slopes.segment(n_x(), own.Phi.size());
-    step.Gamma_slopes.col(n_x() + place) = slopes.tail(own.Gamma.size());
+    step.Phi_slopes.row(n_x() + place) = slopes.segment(n_x(), own.Phi.size()).transpose();
+    step.Gamma_slopes.row(n_x() + place) = slopes.tail(own.Gamma.size()).transpose();
   }
   return step;
 }
@@ -321,11 +321,11 @@ StateSteps::SecondOrderReading ComposedSteps::read_to_second_order(std::size_t r
   SecondOrderReading reading{.z = own.z + added,
                              .H = own.H,
                              .J = MatrixXd::Zero(n_z(), acting),
-                             .H_slopes = MatrixXd::Zero(own.H.size(), n_x() + acting)};
+                             .H_slopes = MatrixXd::Zero(n_x() + acting, own.H.size())};
   reading.J(Eigen::all, places) = own.J;
-  reading.H_slopes.leftCols(n_x()) = own.H_slopes.leftCols(n_x());
-  auto curvatures = reading.H_slopes.rightCols(acting);
-  curvatures(Eigen::all, places) = own.H_slopes.rightCols(own.J.cols());
+  reading.H_slopes.topRows(n_x()) = own.H_slopes.topRows(n_x());
+  auto curvatures = reading.H_slopes.bottomRows(acting);
+  curvatures(places, Eigen::all) = own.H_slopes.bottomRows(own.J.cols());
   for (const Column& column : columns) {
     const Index place = acting_place(column.parameter);
     if (column.target < 0) {
@@ -334,7 +334,7 @@ StateSteps::SecondOrderReading ComposedSteps::read_to_second_order(std::size_t r
     }
     const Index target = acting_place(column.target);
     reading.J.col(place) += column.share * reading.J.col(target);
-    curvatures.col(place) += column.share * curvatures.col(target);
+    curvatures.row(place) += column.share * curvatures.row(target);
   }
   for (std::size_t k = 0; k < beside_.size(); ++k) {
     const Index place = acting_place(model_.tables().n_1() + model_.moving()[k].place);
@@ -345,7 +345,7 @@ StateSteps::SecondOrderReading ComposedSteps::read_to_second_order(std::size_t r
       return all;
     });
     reading.J.col(place) = slopes.head(n_z());
-    curvatures.col(place) = slopes.tail(own.H.size());
+    curvatures.row(place) = slopes.tail(own.H.size()).transpose();
   }
   return reading;
 }

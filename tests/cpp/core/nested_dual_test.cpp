@@ -80,6 +80,33 @@ TEST_CASE("mixed derivatives of two variables") {
   CHECK(f.second_derivative(1, 1) == Approx(-0.16 * std::sin(1.3)));
 }
 
+TEST_CASE("inner and outer variables may be others, and a number knows which it depends on") {
+  using Number = NestedDual<1, 5>;  // by x within, by five parameters without
+  const double x = 0.4;
+  const Number at(x, 0, -1);
+  const auto parameter = [](double value, int i) { return Number(value, -1, i); };
+  const Number f = sin(at) * parameter(1.3, 1) + at / parameter(0.7, 4) -
+                   hypot(at, parameter(2.0, 0)) + atan2(parameter(0.9, 3), at);
+  const double length = std::hypot(x, 2.0);
+  const double square = x * x + 0.81;
+  CHECK(f.slope(0) == Approx(1.3 * std::cos(x) + 1 / 0.7 - x / length - 0.9 / square));
+  const std::vector<double> slopes{-2.0 / length, std::sin(x), 0.0, x / square, -x / 0.49};
+  const std::vector<double> mixed{2.0 * x / std::pow(length, 3), std::cos(x), 0.0,
+                                  (0.81 - x * x) / (square * square), -1 / 0.49};
+  for (int i = 0; i < 5; ++i) {
+    CAPTURE(i);
+    CHECK(f.outer_slope(i) == Approx(slopes[static_cast<std::size_t>(i)]));
+    CHECK(f.second_derivative(i, 0) == Approx(mixed[static_cast<std::size_t>(i)]));
+  }
+  Number sum = parameter(1.0, 4);
+  sum = parameter(2.0, 0) - sum;  // those between have none
+  CHECK(sum.outer_slope(0) == 1.0);
+  CHECK(sum.outer_slope(2) == 0.0);
+  CHECK(sum.outer_slope(4) == -1.0);
+  sum = at;
+  CHECK(sum.outer_slope(4) == 0.0);
+}
+
 namespace {
 
 /// Second derivatives of the sum of A xi1 + b, by differences of its tangent's sum.

@@ -149,7 +149,7 @@ class RecursiveLikelihood {
                     n_1 + n_p, n_w, n_z, moves()},
                    theta, R, lower, upper),
         free_(free) {
-    for (int i = 0; i < n_x + n_p; ++i) numbers_[static_cast<std::size_t>(i)] = i;
+    for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = static_cast<int>(i);
   }
 
   const Recursion& recursion() const { return recursion_; }
@@ -159,9 +159,9 @@ class RecursiveLikelihood {
   /// By z (n_z, NaN where missing) at inputs u.
   Innovation<n_z> update(const Vec<double, n_u>& u, const Vec<double, n_z>& z,
                          double forgetting = 1.0) {
-    return recursion_.update(
-        z, second_order_reading<M>(model_, x(), u, xi1(), p(), all_states(), directions()), free_,
-        forgetting);
+    SecondOrderReading<n_x, n_z, n_1 + n_p> reading;
+    second_order_reading<M>(model_, x(), u, xi1(), p(), places(), reading);
+    return recursion_.update(z, reading, free_, forgetting);
   }
 
   /// To the next row.
@@ -169,10 +169,12 @@ class RecursiveLikelihood {
                        InputsBetweenRows inputs = InputsBetweenRows::linear, int substeps = 1) {
     const Between<M> between(from, to, inputs, {});
     const double held = is_discrete<M>() ? 1.0 : between.duration();
-    auto step =
-        second_order_step<M>(model_, x(), p(), between, substeps, all_states(), directions());
-    add_noise(step, second_order_noise<M>(model_, x(), p(), between, step), between.duration(),
-              is_discrete<M>());
+    SecondOrderStep<n_x, noise_parts<M>(), n_1 + n_p> step;
+    const Vec<double, n_x> end =
+        second_order_step<M>(model_, x(), p(), between, substeps, places(), step);
+    SecondOrderNoise<n_x, n_w, n_1 + n_p> noise;
+    second_order_noise<M>(model_, x(), p(), between, places(), end, step, noise);
+    add_noise(step, noise, between.duration(), is_discrete<M>());
     return recursion_.predict(step, held);
   }
 
@@ -194,15 +196,18 @@ class RecursiveLikelihood {
   }
 
   /// A step that is linear in the state bends by no state.
-  std::span<const int> directions() const {
-    return std::span<const int>(numbers_).subspan(has_linear_dynamics<M>() ? n_x : 0);
+  SecondOrderPlaces places() const {
+    const std::span<const int> all(numbers_);
+    return {.states = all.first(n_x),
+            .parameters = all.first(n_1 + n_p),
+            .outputs = all.first(n_z),
+            .curves = !has_linear_dynamics<M>()};
   }
-  std::span<const int> all_states() const { return std::span<const int>(numbers_).first(n_x); }
 
   M model_;
   Recursion recursion_;
   Free free_;
-  std::array<int, static_cast<std::size_t>(n_x + n_p)> numbers_{};  // 0, 1, ...
+  std::array<int, static_cast<std::size_t>(n_x + n_z + n_1 + n_p)> numbers_{};  // 0, 1, ...
 };
 
 }  // namespace sepcal

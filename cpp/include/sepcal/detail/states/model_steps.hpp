@@ -63,7 +63,7 @@ class ModelSteps final : public StateSteps {
       constants_.push_back(input.absent);
       columns_.push_back(absent ? std::span<const double>() : record.column(input.name));
     }
-    find_directions();
+    find_parameters();
   }
 
   void set_parameters(const Eigen::VectorXd& xi) override {
@@ -203,35 +203,21 @@ class ModelSteps final : public StateSteps {
     const StateRow<M> to = row_at(row + 1);
     const Between<M> between(from, to, plan_.options().inputs, plan_.measured());
     const Vec<double, n_x> begin = whole<double>(from, x);
-    const std::vector<int>& free = plan_.integrated();
-    const auto all = second_order_step<M>(model_, begin, p_, between, plan_.options().substeps,
-                                          free, directions_);
     SecondOrderStep step;
-    step.x = pick(all.x, free, {0});
-    step.Phi = pick(all.Phi, free, free);
-    step.Pi = pick(all.Pi, free, parameters_);
-    step.Phi_slopes = pick(all.Phi_slopes, transition_entries_, slope_columns_);
-    const auto noise = second_order_noise<M>(model_, begin, p_, between, all);
-    SecondOrderNoise own;
-    own.G = pick(noise.G, free, noises_);
-    own.constant = noise.constant;
-    if (!noise.constant) own.slopes = pick(noise.slopes, noise_entries_, slope_columns_);
-    add_noise(step, own, between.duration(), plan_.discrete());
+    const Vec<double, n_x> end = second_order_step<M>(
+        model_, begin, p_, between, plan_.options().substeps, second_order_places(), step);
+    SecondOrderNoise noise;
+    second_order_noise<M>(model_, begin, p_, between, second_order_places(), end, step, noise);
+    add_noise(step, noise, between.duration(), plan_.discrete());
     return step;
   }
 
   SecondOrderReading read_to_second_order(std::size_t row,
                                           const Eigen::VectorXd& x) const override {
     const StateRow<M> here = row_at(row);
-    const auto all = second_order_reading<M>(model_, whole<double>(here, x), here.u, xi1_, p_,
-                                             plan_.integrated(), directions_);
-    const std::vector<int>& free = plan_.integrated();
-    const std::vector<int>& outputs = plan_.outputs();
     SecondOrderReading reading;
-    reading.z = pick(all.z, outputs, {0});
-    reading.H = pick(all.H, outputs, free);
-    reading.J = pick(all.J, outputs, parameters_);
-    reading.H_slopes = pick(all.H_slopes, reading_entries_, slope_columns_);
+    second_order_reading<M>(model_, whole<double>(here, x), here.u, xi1_, p_, second_order_places(),
+                            reading);
     return reading;
   }
 
@@ -283,9 +269,8 @@ class ModelSteps final : public StateSteps {
     return all;
   }
 
-  /// Which derivatives a step of second order is asked for, and where they go among the columns
-  /// that act. A step that is linear in the state curves by no state.
-  void find_directions() {
+  /// The parameters that act, by their places among the model's n_1 + n_p.
+  void find_parameters() {
     const std::vector<int>& acting = plan_.acting_columns();
     const auto place = [&acting](int column) {
       return static_cast<std::size_t>(std::ranges::find(acting, column) - acting.begin());
@@ -294,31 +279,20 @@ class ModelSteps final : public StateSteps {
     for (std::size_t k = 0; k < plan_.linear().size(); ++k) {
       parameters_[place(static_cast<int>(k))] = plan_.linear()[k];
     }
-    for (const int i : plan_.integrated()) {
-      if (!has_linear_dynamics<M>()) directions_.push_back(i);
-      slope_columns_.push_back(i);
-    }
     for (int i = 0; i < n_p; ++i) {
       if (plan_.column_of_parameter(i) < 0) continue;
-      directions_.push_back(n_x + i);
       parameters_[place(plan_.column_of_parameter(i))] = n_1 + i;
     }
-    for (const int parameter : parameters_) slope_columns_.push_back(n_x + parameter);
     noises_.resize(n_w);
     std::iota(noises_.begin(), noises_.end(), 0);
-    transition_entries_ = flat(plan_.integrated(), plan_.integrated(), n_x);
-    noise_entries_ = flat(plan_.integrated(), noises_, n_x);
-    reading_entries_ = flat(plan_.outputs(), plan_.integrated(), n_z);
   }
 
-  /// Where the entries of a matrix's part stand in the whole, column by column of `height` each.
-  static std::vector<int> flat(const std::vector<int>& rows, const std::vector<int>& columns,
-                               int height) {
-    std::vector<int> entries;
-    for (const int column : columns) {
-      for (const int row : rows) entries.push_back(column * height + row);
-    }
-    return entries;
+  /// A step that is linear in the state curves by no state.
+  SecondOrderPlaces second_order_places() const {
+    return {.states = plan_.integrated(),
+            .parameters = parameters_,
+            .outputs = plan_.outputs(),
+            .curves = !has_linear_dynamics<M>()};
   }
 
   /// Rows and columns of a matrix of fixed size, which Eigen's own indexing can't take in every
@@ -391,13 +365,8 @@ class ModelSteps final : public StateSteps {
   Vec<double, n_1> xi1_ = Vec<double, n_1>::Zero();
   std::vector<std::span<const double>> columns_;
   std::vector<double> constants_;  // of inputs that the record doesn't have
-  std::vector<int> directions_;    // of second_order_step()
   std::vector<int> parameters_;    // of the acting columns: places among the model's n_1 + n_p
   std::vector<int> noises_;        // 0 to n_w - 1
-  std::vector<int> transition_entries_;  // entries of the parts that are integrated or measured
-  std::vector<int> noise_entries_;
-  std::vector<int> reading_entries_;
-  std::vector<int> slope_columns_;  // the integrated states, then these, among its slopes' columns
 };
 
 }  // namespace sepcal

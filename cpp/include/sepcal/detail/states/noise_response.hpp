@@ -46,15 +46,24 @@ class NoiseResponse {
            (E_ / 6.0 - cube_ / 360.0 + states::product(square_, square_) / 360.0);
   }
 
-  /// The same where Phi changes by dPhi, to first order.
+  /// Their slopes by many variables from those of Phi, as add_slopes_times() has them.
+  template <class Slopes>
   struct Change {
-    Matrix mean;
-    Matrix slope;
+    Slopes mean;
+    Slopes slope;
   };
-  Change change(const Matrix& dPhi) const {
-    const Matrix d2 = states::product(dPhi, E_) + states::product(E_, dPhi);
-    const Matrix d3 = states::product(d2, E_) + states::product(square_, dPhi);
-    const Matrix d4 = states::product(d2, square_) + states::product(square_, d2);
+  template <class Slopes>
+  Change<Slopes> change(const Slopes& dPhi) const {
+    const auto sum = [&](const Slopes& left, const Matrix& b, const Matrix& a,
+                         const Slopes& right) {
+      Slopes result = Slopes::Zero(dPhi.rows(), dPhi.cols());
+      states::add_slopes_times(left, b, result);
+      states::add_times_slopes(a, right, result);
+      return result;
+    };
+    const Slopes d2 = sum(dPhi, E_, E_, dPhi);
+    const Slopes d3 = sum(d2, E_, square_, dPhi);
+    const Slopes d4 = sum(d2, square_, square_, d2);
     return {duration_ * (dPhi / 2.0 - d2 / 12.0 + d3 / 24.0 - (19.0 / 720.0) * d4),
             -std::numbers::sqrt3 * duration_ * (dPhi / 6.0 - d3 / 360.0 + d4 / 360.0)};
   }

@@ -13,6 +13,11 @@ constexpr int together(int a, int b) {
   return a == Eigen::Dynamic || b == Eigen::Dynamic ? Eigen::Dynamic : a + b;
 }
 
+/// a b entries; Eigen::Dynamic where either is.
+constexpr int times(int a, int b) {
+  return a == Eigen::Dynamic || b == Eigen::Dynamic ? Eigen::Dynamic : a * b;
+}
+
 /// Zeros of a fixed size; a size that is Eigen::Dynamic begins as none.
 template <class Matrix>
 Matrix zeros() {
@@ -35,6 +40,39 @@ auto product(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b,
   requires(sizeof...(More) > 0)
 {
   return product(product(a, b), more...);
+}
+
+/// to += factor from, of columns; nothing where the factor is zero.
+template <class From, class To>
+void add_times(double factor, const From& from, To&& to) {
+  if (factor != 0.0) to += factor * from;
+}
+
+/// Of a matrix with n rows the slopes by many variables: a row a variable, a column an entry,
+/// column by column. Adds to `to` the slopes of A B, those of A being `slopes`.
+template <class Slopes, class B, class To>
+void add_slopes_times(const Slopes& slopes, const B& b, To& to) {
+  const Eigen::Index n = slopes.cols() / b.rows();
+  for (Eigen::Index k = 0; k < b.cols(); ++k) {
+    for (Eigen::Index a = 0; a < b.rows(); ++a) {
+      if (b(a, k) == 0.0) continue;
+      for (Eigen::Index i = 0; i < n; ++i) to.col(i + n * k) += b(a, k) * slopes.col(i + n * a);
+    }
+  }
+}
+
+/// The same, those of B being `slopes`.
+template <class A, class Slopes, class To>
+void add_times_slopes(const A& a, const Slopes& slopes, To& to) {
+  const Eigen::Index columns = slopes.cols() / a.cols();
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      if (a(i, j) == 0.0) continue;
+      for (Eigen::Index k = 0; k < columns; ++k) {
+        to.col(i + a.rows() * k) += a(i, j) * slopes.col(j + a.cols() * k);
+      }
+    }
+  }
 }
 
 }  // namespace sepcal::states
