@@ -51,6 +51,12 @@ void DiagnoseArguments::add_to(CLI::App& diagnose) {
       ->type_name("BOUND")
       ->capture_default_str();
   diagnose
+      .add_option("--rule", rule_,
+                  "what decides: verdict, or partial-f, as stepwise regression does: the largest "
+                  "partial F from 20 on, one candidate at a time, residuals taken for white")
+      ->type_name("RULE")
+      ->capture_default_str();
+  diagnose
       .add_option("--inject", inject_,
                   "puts an effect into the measurements first: would it have been found?")
       ->type_name("E=SIZE");
@@ -84,6 +90,7 @@ StepwiseOptions DiagnoseArguments::resolve() const {
     }
   }
   options.diagnosis.pse = choice_of<PseBound>("--pse", pse_);
+  options.diagnosis.rule = choice_of<DiagnosisRule>("--rule", rule_);
   return options;
 }
 

@@ -36,6 +36,7 @@ class DiagnoseArguments {
   std::vector<std::string> error_budget_;
   std::string within_;
   std::string pse_ = std::string(to_string(PseBound::sidpac));
+  std::string rule_ = std::string(to_string(DiagnosisRule::verdict));
 };
 
 }  // namespace sepcal::app

@@ -17,12 +17,14 @@ from sepcal.__main__ import BAD_INPUT, Parser
 from sepcal.progress import show_progress
 from studies import (
     changes,
+    constants,
     effect_coverage,
     field_strength,
     flight_path,
     frequency_domain,
     hidden_effects,
     intervals,
+    late_units,
     model_structure,
     monte_carlo,
     native,
@@ -45,7 +47,9 @@ STUDIES: tuple[Study, ...] = (
     flight_path.STUDY,
     frequency_domain.STUDY,
     trajectories.STUDY,
+    late_units.STUDY,
     model_structure.STUDY,
+    constants.STUDY,
     paper.STUDY,
     *native.STUDIES,
 )

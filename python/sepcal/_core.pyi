@@ -2160,6 +2160,8 @@ class EffectFinding:
         "sse_reduction",
         "pse",
         "pse_without",
+        "r_squared",
+        "r_squared_without",
         "predicted_drop",
         "held_out_gain",
         "held_out_before",
@@ -2308,6 +2310,16 @@ class EffectFinding:
         The same without it.
         """
     @property
+    def r_squared(self) -> float:
+        """
+        Of what is measured about its mean, with it.
+        """
+    @property
+    def r_squared_without(self) -> float:
+        """
+        The same without it.
+        """
+    @property
     def sentence(self) -> str:
         """
         In plain words.
@@ -2358,7 +2370,7 @@ class Advice:
     What to add, once a fit with it has shown that it can be.
     """
 
-    _fields: typing.ClassVar[tuple] = ("effect", "withheld")
+    _fields: typing.ClassVar[tuple] = ("effect", "withheld", "then")
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
@@ -2372,6 +2384,11 @@ class Advice:
     def effect(self) -> str | None:
         """
         None where nothing was found or all was withheld.
+        """
+    @property
+    def then(self) -> str | None:
+        """
+        Its partner, to be added after it, where two were found that neither does alone.
         """
     @property
     def withheld(self) -> list[str]:
@@ -2688,6 +2705,7 @@ class StepwiseStep:
         "partial_f",
         "pse",
         "pse_without",
+        "r_squared",
         "held_out_gain",
         "predicted_drop",
         "found_drop",
@@ -2743,6 +2761,8 @@ class StepwiseStep:
     @property
     def pse_without(self) -> float: ...
     @property
+    def r_squared(self) -> float: ...
+    @property
     def rmse_after(self) -> float: ...
     @property
     def rmse_before(self) -> float: ...
@@ -2765,6 +2785,7 @@ class Diagnosis:
         "work",
         "left_undone",
         "pse",
+        "rule",
         "effects",
         "residual",
         "where",
@@ -2865,6 +2886,11 @@ class Diagnosis:
     def rmse(self) -> float:
         """
         Over all outputs, in their unit.
+        """
+    @property
+    def rule(self) -> str:
+        """
+        What decided: "verdict", or "partial-f", stepwise regression's.
         """
     @property
     def sentence(self) -> str:
@@ -3436,6 +3462,7 @@ class DiagnosisOptions:
         simulations: typing.SupportsInt | typing.SupportsIndex,
         seed: typing.SupportsInt | typing.SupportsIndex,
         pse: str,
+        rule: str,
         only: collections.abc.Sequence[str],
         error_budget: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         within: typing.SupportsFloat | typing.SupportsIndex,

@@ -278,6 +278,7 @@ class Calibration(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        rule: Literal["verdict", "partial-f"] | str = "verdict",
         error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Diagnosis: ...
@@ -294,6 +295,7 @@ class Calibration(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        rule: Literal["verdict", "partial-f"] | str = "verdict",
         error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Stepwise[Calibration]: ...
@@ -310,6 +312,7 @@ class Calibration(Fit):
         simulations: int = 40,
         seed: int = 0,
         pse: Literal["sidpac", "classic"] | str = "sidpac",
+        rule: Literal["verdict", "partial-f"] | str = "verdict",
         error_budget: Mapping[str, float] | None = None,
         within: float | None = None,
     ) -> Diagnosis | Stepwise[Calibration]:
@@ -327,6 +330,8 @@ class Calibration(Fit):
             seed: Of these simulations.
             pse: What bounds the noise in the candidates' predicted square error: half the variance
                 of what is measured, as SIDPAC has it, or all of it.
+            rule: What decides: all that a verdict asks, or stepwise regression's partial F, one
+                candidate at a time from 20 on, residuals taken for white.
             error_budget: How far each error of an instrument wanders at most, in its unit, where
                 you know it, by the names that `Diagnosis.error_budget` has.
             within: Answers within so many seconds [no limit]; `Diagnosis.left_undone` says what
@@ -355,6 +360,7 @@ class Calibration(Fit):
             simulations=simulations,
             seed=seed,
             pse=pse,
+            rule=rule,
             error_budget=error_budget,
             within=within,
         )

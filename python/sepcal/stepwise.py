@@ -130,6 +130,7 @@ def diagnosis_options(
     simulations: int,
     seed: int,
     pse: str,
+    rule: str,
     error_budget: Mapping[str, float] | None,
     within: float | None,
 ) -> _core.DiagnosisOptions:
@@ -150,6 +151,7 @@ def diagnosis_options(
         simulations=simulations,
         seed=seed,
         pse=pse,
+        rule=rule,
         only=to_names("only", only),
         error_budget=sizes,
         within=math.inf if within is None else within,

@@ -24,13 +24,14 @@ KEYS = {
         "advice",
     ),
     *("pairs", "noise_floor", "where", "residual", "effects", "unexplained", "unmeasured"),
-    *("limits", "missing_channels", "pse"),
+    *("limits", "missing_channels", "pse", "rule"),
     *("correlation_time", "error_budget", "work", "left_undone"),
 }
 EFFECT_KEYS = {
     *("name", "sentence", "drivers", "estimate", "standard_error", "unit", "shapes", "p_value"),
     *("log10_p", "p_adjusted", "p_listed", "predicted_drop", "held_out_gain", "held_out_before"),
     *("outputs", "partial_f", "sse", "sse_reduction", "pse", "pse_without"),
+    *("r_squared", "r_squared_without"),
     "share_after_selection",
     *("held_out_after", "held_out_passed", "held_out_interleaved", "visibility", "absorbed_by"),
     *("status", "beside"),

@@ -74,6 +74,18 @@ struct ChoiceNames<PseBound> {
   static constexpr std::array<std::string_view, 2> names{"sidpac", "classic"};
 };
 
+/// What decides: verdict, all that diagnose() asks; partial_f, stepwise regression's partial F of
+/// single candidates alone, residuals taken for white and regressors as they are read.
+enum class DiagnosisRule { verdict, partial_f };
+
+template <>
+struct ChoiceNames<DiagnosisRule> {
+  static constexpr std::array<std::string_view, 2> names{"verdict", "partial-f"};
+};
+
+/// From which partial F on a candidate enters by DiagnosisRule::partial_f, as SIDPAC's swr has it.
+inline constexpr double enters_from = 20.0;
+
 /// What stepwise regression asks of a candidate, residuals taken for white. Sums are over all N
 /// readings, those of each output in units of its RMSE in the fit: squares of a single output times
 /// rmse^2 are those of its unit. p are the model's parameters, q the candidate's that can be seen.
@@ -84,6 +96,8 @@ struct Structure {
   double sse_reduction = not_a_number;  // by orthogonal functions: what it takes of sse
   double pse = not_a_number;  // predicted square error, SSE/N + 2 s2max (p + q)/N; s2max: PseBound
   double pse_without = not_a_number;
+  double r_squared = not_a_number;  // of what is measured about its mean, with it
+  double r_squared_without = not_a_number;
 };
 
 /// What the record says about one candidate. Undefined numbers are NaN.
@@ -179,6 +193,7 @@ struct UnmeasuredCause {
 struct Advice {
   std::string effect = {};                 // none where nothing was found or all was withheld
   std::vector<std::string> withheld = {};  // why not what was found before it: a sentence each
+  std::string then = {};  // its partner, where two were found that neither does alone
 };
 
 /// What a diagnosis did.
@@ -196,8 +211,9 @@ struct DiagnosisWork {
 struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   Advice advice = {};
-  std::vector<EffectFinding> effects = {};  // ranked, best first
-  PseBound pse = PseBound::sidpac;          // of their structure
+  std::vector<EffectFinding> effects = {};      // ranked, best first
+  PseBound pse = PseBound::sidpac;              // of their structure
+  DiagnosisRule rule = DiagnosisRule::verdict;  // what decided
   /// Two causes at once: the pairs that explain it as well as anything does and better than either
   /// of the two alone, best first.
   std::vector<std::string> pairs = {};
@@ -246,6 +262,9 @@ struct DiagnosisOptions {
   int simulations = 40;                     // of the noise, that calibrate a test
   std::vector<std::string> preferred = {};  // come first among those as likely
   PseBound pse = PseBound::sidpac;
+  DiagnosisRule rule = DiagnosisRule::verdict;
+  /// Of two that are found as a pair advises the one with the larger partial F, its partner then.
+  bool one_at_a_time = false;
   /// The caller's candidates, where there are any, in place of a catalogue's: one that the record
   /// can't make is an error and not left out.
   std::vector<std::string> only = {};

@@ -77,6 +77,15 @@ void define_parts(py::module_& module) {
           },
           "None where nothing was found or all was withheld.")
       .field("withheld", &Advice::withheld, "Why not what was found before it: a sentence each.")
+      .field(
+          "then",
+          [](const Advice& self) {
+            return self.then.empty() ? std::nullopt : std::optional(self.then);
+          },
+          [](Advice& self, std::optional<std::string> then) {
+            self.then = std::move(then).value_or("");
+          },
+          "Its partner, to be added after it, where two were found that neither does alone.")
       .comparable()
       .finish();
 
@@ -199,6 +208,8 @@ void define_diagnosis(py::module_& module) {
   of("left_undone", &Diagnosis::left_undone, "Steps for which there was no time.");
   of("pse", &Diagnosis::pse,
      R"(What bounds the noise of the effects' pse: "sidpac" var(z)/2, "classic" var(z).)");
+  of("rule", &Diagnosis::rule,
+     R"(What decided: "verdict", or "partial-f", stepwise regression's.)");
   bound.field("effects", &Diagnosed::effects, "Best first.");
   of("residual", &Diagnosis::residual, "By output.");
   bound.field("where", whole, &FlightDiagnosis::where,

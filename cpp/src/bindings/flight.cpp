@@ -378,18 +378,19 @@ void define_calibration(py::module_& module) {
       .field("standard_error", &FlightDeparture::standard_error, "");
   py::class_<DiagnosisOptions>(module, "DiagnosisOptions")
       .def(py::init([](int simulations, std::uint64_t seed, const std::string& pse,
-                       std::vector<std::string> only, std::map<std::string, double> error_budget,
-                       double within) {
+                       const std::string& rule, std::vector<std::string> only,
+                       std::map<std::string, double> error_budget, double within) {
              DiagnosisOptions options;
              options.simulations = simulations;
              options.seed = seed;
              options.pse = choice_of<PseBound>("pse", pse);
+             options.rule = choice_of<DiagnosisRule>("rule", rule);
              options.only = std::move(only);
              options.error_budget = std::move(error_budget);
              options.within = within;
              return options;
            }),
-           py::kw_only(), "simulations"_a, "seed"_a, "pse"_a, "only"_a, "error_budget"_a,
+           py::kw_only(), "simulations"_a, "seed"_a, "pse"_a, "rule"_a, "only"_a, "error_budget"_a,
            "within"_a);
   py::class_<Calibration> calibration(module, "Calibration");
   define_stepped<Calibration>(module, "SteppedCalibration");

@@ -129,6 +129,11 @@ struct type_caster<sepcal::PseBound>
     : WordCaster<sepcal::PseBound, sepcal::PseBound::sidpac, sepcal::PseBound::classic> {};
 
 template <>
+struct type_caster<sepcal::DiagnosisRule>
+    : WordCaster<sepcal::DiagnosisRule, sepcal::DiagnosisRule::verdict,
+                 sepcal::DiagnosisRule::partial_f> {};
+
+template <>
 struct type_caster<sepcal::StepwiseEnd>
     : WordCaster<sepcal::StepwiseEnd, sepcal::StepwiseEnd::nothing_found,
                  sepcal::StepwiseEnd::most_added, sepcal::StepwiseEnd::withheld,

@@ -70,6 +70,19 @@ void object_to_fit(const Fit& before, const EffectFinding& finding, const Fit& f
   objection.is_to_fit = !objection.reason.empty();
 }
 
+/// A lag that a fit finds no longer than its error, which allows for colour, is none, whatever one
+/// step from the fit without it said.
+std::string lag_within_error(const CandidateRoom& room, const Candidate& candidate, double shape) {
+  constexpr double errors = 2.0;
+  constexpr double milliseconds = 1e3;
+  if (!room.follows_path() || !is_lag(candidate)) return {};
+  const Fit fitted = refit_nearly(room, candidate, shape, enough_rows, true);
+  const Parameter& lag = fitted[candidate.coefficients.front().name];
+  if (!(std::abs(lag.value) <= errors * lag.standard_error)) return {};
+  return fmt::format("fitted, {} is {:.1f} +- {:.1f} ms, no more than its error", lag.name,
+                     milliseconds * lag.value, milliseconds * lag.standard_error);
+}
+
 /// The coefficient that a fit has further off than physics lets it be.
 std::string implausible_size(const CandidateRoom& room, const Candidate& candidate,
                              const Fit& fitted) {
@@ -116,6 +129,8 @@ Objection find_objection(CandidateRoom& room, Refits& refits, const EffectFindin
                                       std::max(objects_from, nearly_all * finding.predicted_drop);
     object_to_fit(room.fitted(), finding, fitted, keeps_promise, objection);
     if (objection.is_to_fit) return objection;
+    objection.reason = lag_within_error(room, candidate, shape);
+    if (!objection.reason.empty()) return objection;
     objection.reason = implausible_size(room, candidate, fitted);
     if (!objection.reason.empty()) return objection;
     const Folds folds = few_folds(room.fit(), room.columns(candidate, shape).whole);

@@ -156,9 +156,17 @@ VectorXd taken_of_residual(const LinearisedFit& without, const LinearisedFit& wi
 }
 
 /// Whether two fits take the same of the residual, to an angle.
-bool is_alike(const Alternative& one, const Alternative& other) {
+bool is_alike(const Alternative& one, const Alternative& other, double cosine = alike) {
   if (one.taken.size() == 0 || one.taken.size() != other.taken.size()) return false;
-  return one.taken.dot(other.taken) > alike * one.taken.norm() * other.taken.norm();
+  return one.taken.dot(other.taken) > cosine * one.taken.norm() * other.taken.norm();
+}
+
+/// Whether both are lags that take much the same: an inertial unit that is late and an attitude
+/// that is early by as much differ by what the accelerometers say alone, and a likelihood knows
+/// that no better than the noise.
+bool are_one_lag(const Alternative& one, const Alternative& other) {
+  constexpr double much_the_same = 0.5;
+  return is_lag(one.candidate) && is_lag(other.candidate) && is_alike(one, other, much_the_same);
 }
 
 /// The most that what comes first may leave of the error on rows held out, beside what others
@@ -341,9 +349,15 @@ const Alternative* put_first(const ModelSelection& selection,
     const bool is_likelier = &alternative == curve && more < -as_likely;
     const bool is_as_likely =
         std::abs(more) < as_likely && clearly_less * error_left(&alternative) <= error_left(first);
-    const bool is_as_good = is_alike(alternative, *first) && error_left(&alternative) <= left;
+    const bool is_as_good = (is_alike(alternative, *first) || are_one_lag(alternative, *first)) &&
+                            error_left(&alternative) <= left;
     if (!is_likelier && !is_as_likely && !is_as_good) continue;
-    finding_of(findings, alternative.candidate.name).beside = Beside::equivalent;
+    EffectFinding& finding = finding_of(findings, alternative.candidate.name);
+    finding.beside = Beside::equivalent;
+    if (is_lag(alternative.candidate)) {  // told beside the first's, which is a fit's
+      Coefficient& lag = finding.coefficients.front();
+      lag.estimate = alternative.fit[lag.name].value;
+    }
   }
   std::ranges::stable_partition(findings, [](const EffectFinding& finding) {
     return finding.beside == Beside::equivalent && finding.status == FindingStatus::found;

@@ -10,6 +10,7 @@
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/projection.hpp"
 #include "numerics/tails.hpp"
+#include "numerics/toeplitz.hpp"
 
 namespace sepcal::diagnosis {
 
@@ -19,13 +20,48 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// So many that each is long beside what rows of the residual know of each other.
-Index count_blocks(const RowLayout& layout, const VectorXd& residual) {
+/// The autocorrelation of a column, of all outputs together, up to a quarter of the rows.
+VectorXd autocorrelation(const RowLayout& layout, const Eigen::Ref<const VectorXd>& column) {
+  VectorXd products = VectorXd::Zero(std::max<Index>(1, layout.rows / 4));  // by lag
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    for (const Segment& segment : layout.segments) {
+      const auto rows = static_cast<Index>(segment.rows());
+      const Index lags = std::min(products.size(), rows);
+      const auto own = column.segment(layout.first(j) + static_cast<Index>(segment.first), rows);
+      products.head(lags) += static_cast<double>(rows) * numerics::autocovariance(own, lags - 1);
+    }
+  }
+  return products[0] > 0.0 ? VectorXd(products / products[0]) : VectorXd::Zero(products.size());
+}
+
+/// Over how many rows scores go together, the products of a column and the residual: no longer than
+/// either does. A column that swings adds up nothing slow.
+double rows_together(const RowLayout& layout, const MatrixXd& columns, const VectorXd& residual) {
+  constexpr double negligible = 0.05;
+  double longest = 1.0;
+  for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
+    VectorXd own = VectorXd::Zero(residual.size());
+    own.segment(layout.first(j), layout.rows) = residual.segment(layout.first(j), layout.rows);
+    const VectorXd of_residual = autocorrelation(layout, own);
+    for (const auto column : columns.colwise()) {
+      const VectorXd of_column = autocorrelation(layout, column);
+      double time = 1.0;
+      for (Index lag = 1; lag < of_column.size(); ++lag) {
+        if (of_column[lag] < negligible || of_residual[lag] < negligible) break;
+        time += 2.0 * of_column[lag] * of_residual[lag];
+      }
+      longest = std::max(longest, time);
+    }
+  }
+  return longest;
+}
+
+/// So many that each is long beside what rows of the scores know of each other.
+Index count_blocks(Index rows, double memory) {
   constexpr double correlation_times = 4.0;
   constexpr double fewest = 6.0;
   constexpr double most = 40.0;
-  const double wanted =
-      static_cast<double>(layout.rows) / (correlation_times * correlation_rows(layout, residual));
+  const double wanted = static_cast<double>(rows) / (correlation_times * memory);
   return static_cast<Index>(std::clamp(std::floor(wanted), fewest, most));
 }
 
@@ -35,11 +71,12 @@ double log10_block_tail(const NullHypothesis& null, MatrixXd columns) {
   const RowLayout& layout = null.fit().layout;
   // Not whitened: what a noise model takes for known it may know wrongly over a long time.
   const VectorXd beside = null.residual - columns * (columns.transpose() * null.residual);
-  const Index blocks = count_blocks(layout, beside);
   null.whiten(columns);
   const MatrixXd B = orthonormal_basis(remove_span(null.white_basis, columns));
   const Index m = B.cols();
   if (m == 0) return 0.0;
+  const double memory = rows_together(layout, B, beside);
+  const Index blocks = count_blocks(layout.rows, memory);
   const VectorXd estimate = B.transpose() * null.white_residual;
   const VectorXd left = null.white_residual - B * estimate;
 

@@ -148,6 +148,11 @@ bool is_line_of(const Candidate& line, const Candidate& curve, bool at_its_port)
          (!at_its_port || straight.port == bent.port);
 }
 
+bool is_lag(const Candidate& candidate) {
+  return candidate.settings.size() == 1 && candidate.coefficients.size() == 1 &&
+         candidate.coefficients.front().unit == "s" && candidate.shape.parameter.empty();
+}
+
 bool is_of_lines(const Candidate& candidate, std::size_t effects) {
   const auto [own, form, coefficients] = complexity_of(candidate);
   return own == effects && form == 0;

@@ -57,14 +57,17 @@ bool is_simple(const Candidate& candidate);
 /// Whether it is so many effects that have a physics of their own or follow a channel as it is.
 bool is_of_lines(const Candidate& candidate, std::size_t effects);
 
+/// Whether it is one time by which something is late.
+bool is_lag(const Candidate& candidate);
+
 /// Whether the one is a line along the channel of which the other is a function of any form, at any
 /// port or at the same.
 bool is_line_of(const Candidate& line, const Candidate& curve, bool at_its_port);
 
 /// Of which inputs columns are made: as they were read, without their white noise where that leaves
-/// clearly less of the error; or as the kit's disturbed ones would have been read without what the
-/// model leaves.
-enum class Regressors { read, undisturbed };
+/// clearly less of the error; as the kit's disturbed ones would have been read without what the
+/// model leaves; or as they were read, to the last digit.
+enum class Regressors { read, undisturbed, unsmoothed };
 
 /// A candidate's columns, as many as coefficients.
 struct CandidateColumns {

@@ -50,7 +50,8 @@ CandidateTesting::CandidateTesting(const DiagnosedFit& fitted, const Candidate& 
     : fitted_(fitted),
       options_(options),
       pool_(pool),
-      room_(fitted, released, pool),
+      room_(fitted, released, pool,
+            options.rule == DiagnosisRule::partial_f ? Regressors::unsmoothed : Regressors::read),
       refits_(std::make_unique<Refits>(room_)) {
   if (is_exact()) return;
   room_.add_input_drift();

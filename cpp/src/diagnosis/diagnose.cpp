@@ -27,6 +27,7 @@
 #include "numerics/order_statistics.hpp"
 #include "numerics/selection.hpp"
 #include "numerics/tails.hpp"
+#include "sepcal/effect_name.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -134,6 +135,8 @@ class Recipe {
   void put_line_first();
   void explain_away();
   void conclude();
+  void choose_by_partial_f();
+  void take_apart();
 
   using Clock = std::chrono::steady_clock;
 
@@ -622,8 +625,62 @@ void Recipe::conclude() {
   }
 }
 
+/// Of a pair that is advised the one that takes more goes first, where it does much alone, and the
+/// other after it: as sure as the pair is.
+void Recipe::take_apart() {
+  const auto pair = std::ranges::find(result_.effects, result_.advice.effect, &EffectFinding::name);
+  if (pair == result_.effects.end()) return;
+  const EffectFinding both = *pair;
+  std::vector<std::string> names = split_effects(both.name);
+  if (names.size() != 2) return;
+  const auto find = [&](const std::string& name) {
+    return std::ranges::find(result_.effects, name, &EffectFinding::name);
+  };
+  const auto f_of = [&](const std::string& name) { return find(name)->structure.partial_f; };
+  if (find(names[0]) == result_.effects.end() || find(names[1]) == result_.effects.end()) return;
+  if (f_of(names[1]) > f_of(names[0])) std::swap(names[0], names[1]);
+  if (!(f_of(names[0]) >= enters_from)) return;
+  for (const std::string& name : {names[1], names[0]}) {
+    const auto finding = find(name);
+    Trial& trial = *find_trial(name);
+    if (trial.folds.count == 0) hold_out(testing_.room(), testing_.null(), trial);
+    tell_held_out(trial, *finding);
+    finding->status = FindingStatus::found;
+    finding->log10_p = both.log10_p;
+    finding->p_value = both.p_value;
+    finding->p_adjusted = both.p_adjusted;
+    finding->p_listed = both.p_listed;
+    finding->beside = name == names[1] ? Beside::counts : Beside::untried;
+    std::rotate(result_.effects.begin(), finding, finding + 1);
+  }
+  result_.advice.effect = names[0];
+  result_.advice.then = names[1];
+}
+
+/// As stepwise regression does: the largest partial F enters, one candidate at a time.
+void Recipe::choose_by_partial_f() {
+  in_time("screening effects", [&] { testing_.screen_all(trials_); });
+  for (const Trial& trial : trials_) {
+    EffectFinding finding = describe(testing_.room(), trial);
+    finding.structure = structure_of(testing_.null(), trial, options_.pse);
+    finding.log10_p = finding.p_value = not_a_number;  // no probability is asked
+    const double partial_f = finding.structure.partial_f;
+    if (partial_f >= enters_from) finding.status = FindingStatus::found;
+    result_.effects.push_back(std::move(finding));
+  }
+  std::ranges::stable_sort(result_.effects, [](const EffectFinding& a, const EffectFinding& b) {
+    if (a.status != b.status) return a.status < b.status;
+    return a.structure.partial_f > b.structure.partial_f;
+  });
+  if (has(FindingStatus::found)) {
+    result_.verdict = Verdict::effect_missing;
+    result_.advice.effect = result_.effects.front().name;
+  }
+}
+
 Diagnosis Recipe::run(const std::vector<std::string>& names) {
   result_.pse = options_.pse;
+  result_.rule = options_.rule;
   if (testing_.is_exact()) return result_;  // nothing is left to explain
   const CandidateRoom& room = testing_.room();
   const RowLayout& layout = room.fit().layout;
@@ -638,6 +695,11 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
     for (const std::string& name : names) testing_.room().make(name);  // or the reason is thrown
   }
   trials_ = testing_.make(names);
+  if (options_.rule == DiagnosisRule::partial_f) {
+    choose_by_partial_f();
+    result_.work = testing_.work();
+    return result_;
+  }
   in_time("screening effects", [&] { testing_.screen_all(trials_); });
   in_time("testing effects",
           [&] { testing_.test_best(trials_, most_tested, threshold_of(trials_, tests()), true); });
@@ -663,6 +725,7 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
       in_time("fitting what is advised", [&] { advise(); });
     }
   }
+  if (options_.one_at_a_time) take_apart();
   if (testing_.instruments()) result_.error_budget = testing_.instruments()->bounds();
   conclude();
   in_time("limits", [&] {
@@ -678,7 +741,11 @@ Diagnosis Recipe::run(const std::vector<std::string>& names) {
 
 Diagnosis diagnose(const DiagnosedFit& fitted, const std::vector<std::string>& candidates,
                    const DiagnosisOptions& options) {
-  return Recipe(fitted, options).run(candidates);
+  if (options.rule == DiagnosisRule::verdict) return Recipe(fitted, options).run(candidates);
+  constexpr double of_rounding = 1e-6;  // whatever is no combination of the others has a partial F
+  DiagnosisOptions exact = options;
+  exact.least_visibility = of_rounding;
+  return Recipe(fitted, exact).run(candidates);
 }
 
 }  // namespace sepcal

@@ -22,6 +22,12 @@ Structure measure_structure(const LinearisedFit& fit, const Eigen::VectorXd& res
   const double share = bound == PseBound::sidpac ? 0.5 : 1.0;
   const double s2max = variance > 0.0 ? share * variance : not_a_number;
   found.pse_without = (found.sse + 2.0 * s2max * p) / N;
+  if (variance > 0.0) {
+    const double total =
+        variance * (N - static_cast<double>(layout.outputs.size()));  // each about its mean
+    found.r_squared_without = 1.0 - found.sse / total;
+    found.r_squared = 1.0 - (found.sse - reduction) / total;
+  }
   found.pse = (found.sse - reduction + 2.0 * s2max * (p + q)) / N;
   return found;
 }

@@ -91,8 +91,13 @@ DiagnosedFit diagnosed_coefficient(const DiagnosedFit& all, const AeroEquation& 
 bool is_surer(const Diagnosis& one, const Diagnosis& other) {
   const auto place = [](const Diagnosis& found) {
     const bool advised = !found.advice.effect.empty();
-    const double log10_p = found.effects.empty() ? 0.0 : found.effects.front().log10_p;
-    return std::tuple(found.verdict != Verdict::effect_missing, !advised, log10_p);
+    double doubt = 0.0;
+    if (!found.effects.empty()) {
+      const EffectFinding& first = found.effects.front();
+      const bool by_f = found.rule == DiagnosisRule::partial_f;
+      doubt = by_f ? -first.structure.partial_f : first.log10_p;
+    }
+    return std::tuple(found.verdict != Verdict::effect_missing, !advised, doubt);
   };
   return place(one) < place(other);
 }
@@ -135,6 +140,13 @@ Diagnosis join(std::vector<Diagnosis> parts) {
   }
   all.rmse = std::sqrt(square / static_cast<double>(parts.size()));
   all.floor = std::sqrt(floor / static_cast<double>(parts.size()));
+  if (all.rule == DiagnosisRule::partial_f) {
+    std::ranges::stable_sort(all.effects, [](const EffectFinding& a, const EffectFinding& b) {
+      if (a.status != b.status) return a.status < b.status;
+      return a.structure.partial_f > b.structure.partial_f;
+    });
+    return all;
+  }
   // What is found stands as its coefficient has it; the rest by how sure it is.
   const auto rest = std::ranges::stable_partition(all.effects, [](const EffectFinding& effect) {
     return effect.status == FindingStatus::found;
@@ -166,7 +178,7 @@ Diagnosis diagnose_coefficients(const AircraftFit& fitted, const Flight& flight,
     if (is_moment(equation.coefficient)) moments.push_back(equation.coefficient);
   }
   const std::size_t apart = rows_apart(laid);
-  if (apart > 1 && !moments.empty()) {
+  if (apart > 1 && !moments.empty() && options.rule == DiagnosisRule::verdict) {
     Record rows = all.record;
     rows.cut(all.rows);
     thinned.record = thin_out(rows, apart);
@@ -200,6 +212,7 @@ Diagnosis diagnose_coefficients(const AircraftFit& fitted, const Flight& flight,
     DiagnosisOptions own = options;
     own.others = asked - candidates.size();
     own.preferred = products_among(candidates);
+    own.one_at_a_time = true;
     parts.push_back(
         diagnose(diagnosed_coefficient(is_moment(equation.coefficient) ? thinned : all, equation),
                  candidates, own));

@@ -56,7 +56,8 @@ std::string to_json(const FlightDiagnosis& result) {
   root["sentence"] = verdict_sentence(result);
   root["advice"] = {
       {"effect", diagnosis.advice.effect.empty() ? Json() : Json(diagnosis.advice.effect)},
-      {"withheld", diagnosis.advice.withheld}};
+      {"withheld", diagnosis.advice.withheld},
+      {"then", diagnosis.advice.then.empty() ? Json() : Json(diagnosis.advice.then)}};
   root["pairs"] = diagnosis.pairs;
   root["rmse"] = number(diagnosis.rmse);
   root["noise_floor"] = number(diagnosis.floor);
@@ -67,6 +68,7 @@ std::string to_json(const FlightDiagnosis& result) {
   root["where"] = write_list(result.where);
   root["residual"] = write_by_name(diagnosis.residual, &ResidualNoise::output);
   root["pse"] = to_string(diagnosis.pse);
+  root["rule"] = to_string(diagnosis.rule);
   root["effects"] = Json::array();
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
     root["effects"].push_back(write_effect(diagnosis.effects[i], result.sentences[i]));

@@ -237,6 +237,12 @@ struct ResultFields<EffectFinding> {
     row(
         "pse_without", [](auto& self) -> auto& { return self.structure.pse_without; },
         "The same without it.");
+    row(
+        "r_squared", [](auto& self) -> auto& { return self.structure.r_squared; },
+        "Of what is measured about its mean, with it.");
+    row(
+        "r_squared_without", [](auto& self) -> auto& { return self.structure.r_squared_without; },
+        "The same without it.");
     row("predicted_drop", &Finding::predicted_drop,
         "Of the RMSE over these outputs, 1 - after / before.");
     row("held_out_gain", &Finding::held_out_gain, "The same on rows left out.");
@@ -336,6 +342,7 @@ struct ResultFields<StepwiseStep> {
     row("partial_f", [](auto& self) -> auto& { return self.promised.structure.partial_f; }, "");
     row("pse", [](auto& self) -> auto& { return self.promised.structure.pse; }, "");
     row("pse_without", [](auto& self) -> auto& { return self.promised.structure.pse_without; }, "");
+    row("r_squared", [](auto& self) -> auto& { return self.promised.structure.r_squared; }, "");
     row(
         "held_out_gain", [](auto& self) -> auto& { return self.promised.held_out_gain; },
         "Promised, on rows left out.");

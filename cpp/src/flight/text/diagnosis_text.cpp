@@ -80,6 +80,17 @@ Page change(double from, double to) {
   return std::isfinite(change) ? page("{:+.1f} %", change) : Page("-");
 }
 
+/// As stepwise regression has it.
+Page regression_row(const EffectFinding& effect, std::size_t width) {
+  const Structure& structure = effect.structure;
+  return page("{:<{}}  {:<14} {:>9} {:>8} {:>9} {:>9}\n", effect.name, width,
+              effect.status == FindingStatus::found ? "ENTERS" : status_in_words(effect),
+              text::defined(structure.partial_f, "{:.4g}"),
+              text::defined(structure.r_squared, "{:.4f}"),
+              change(structure.pse_without, structure.pse),
+              change(structure.sse, structure.sse - structure.sse_reduction));
+}
+
 /// As the verdict has it; then, where all is told, as stepwise regression has it.
 Page effect_row(const EffectFinding& effect, std::size_t width, Detail detail) {
   const Page row = page("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10.2f}", effect.name, width,
@@ -100,9 +111,14 @@ Page effect_rows(const FlightDiagnosis& result, Detail detail) {
   for (std::size_t i = 0; i < std::min(most_shown, effects.size()); ++i) {
     width = std::max(width, effects[i].name.size());
   }
-  Page text = page("{:<{}}  {:<14} {:>9} {:>10} {:>10} {:>10}", "effect", width, "status", "p",
-                   "predicted", "held out", "visibility");
-  if (detail != Detail::brief) text += page(" {:>9} {:>9} {:>9}", "F", "PSE", "SSE");
+  const bool by_f = result.diagnosis.rule == DiagnosisRule::partial_f;
+  Page text = page("{:<{}}  {:<14}", "effect", width, "status");
+  if (by_f) {
+    text += page(" {:>9} {:>8} {:>9} {:>9}", "F", "R^2", "PSE", "SSE");
+  } else {
+    text += page(" {:>9} {:>10} {:>10} {:>10}", "p", "predicted", "held out", "visibility");
+    if (detail != Detail::brief) text += page(" {:>9} {:>9} {:>9}", "F", "PSE", "SSE");
+  }
   text += "\n";
   std::size_t shown = 0;
   bool some_unpredicted = false;
@@ -115,7 +131,7 @@ Page effect_rows(const FlightDiagnosis& result, Detail detail) {
     }
     some_small = some_small || is_too_small(effect);
     some_unpredicted = some_unpredicted || is_unpredicted(effect);
-    text += effect_row(effect, width, detail);
+    text += by_f ? regression_row(effect, width) : effect_row(effect, width, detail);
     ++shown;
   }
   const auto hidden =

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 
 #include "base/page.hpp"
+#include "flight/text/number_text.hpp"
 #include "flight/text/pages.hpp"
 #include "flight/verbs/stepwise_loop.hpp"
 #include "sepcal/flight/stepwise.hpp"
@@ -11,10 +13,13 @@ namespace sepcal {
 using base::joined;
 using base::Page;
 using base::page;
+using text::defined;
 
 namespace {
 
-Page signed_percent(double fraction) { return page("{:+.1f} %", 100.0 * fraction); }
+Page signed_percent(double fraction) {
+  return std::isnan(fraction) ? Page("-") : page("{:+.1f} %", 100.0 * fraction);
+}
 
 }  // namespace
 
@@ -25,13 +30,15 @@ Page text::course_page(const Stepwise& course) {
   }
   Page text;
   if (!course.steps.empty()) {
-    text = page("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}  RMSE\n", "added", width, "p", "F",
-                "held out", "promised", "found");
+    text = page("{:<{}} {:>9} {:>9} {:>8} {:>9} {:>9} {:>9}  RMSE\n", "added", width, "p", "F",
+                "R^2", "held out", "promised", "found");
   }
   for (const StepwiseStep& step : course.steps) {
     const EffectFinding& promised = step.promised;
-    text += page("+ {:<{}} {:>9.2g} {:>9.3g} {:>9} {:>9} {:>9}  {:.4g} -> {:.4g}\n", promised.name,
-                 width - 2, promised.p_adjusted, promised.structure.partial_f,
+    text += page("+ {:<{}} {:>9} {:>9} {:>8} {:>9} {:>9} {:>9}  {:.4g} -> {:.4g}\n", promised.name,
+                 width - 2, defined(promised.p_adjusted, "{:.2g}"),
+                 defined(promised.structure.partial_f, "{:.4g}"),
+                 defined(promised.structure.r_squared, "{:.4f}"),
                  signed_percent(-promised.held_out_gain), signed_percent(-promised.predicted_drop),
                  signed_percent(-step.found_drop()), step.rmse_before, step.rmse_after);
     if (!step.as_good.empty()) {

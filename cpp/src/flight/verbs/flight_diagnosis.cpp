@@ -284,9 +284,63 @@ std::string reason_against(const Diagnosis& found, const std::string& name) {
   return {};
 }
 
+/// As stepwise regression tells it.
+std::string sentence_by_partial_f(const FlightDiagnosis& diagnosis) {
+  if (diagnosis.diagnosis.effects.empty()) return "No candidate can be asked for its partial F.";
+  const EffectFinding& first = diagnosis.diagnosis.effects.front();
+  const Structure& structure = first.structure;
+  if (first.status != FindingStatus::found) {
+    return fmt::format(
+        "No candidate enters: {} ({}) has the largest partial F, {:.4g} of at least {:.4g}.",
+        first.name, diagnosis.sentences.front(), structure.partial_f, enters_from);
+  }
+  return fmt::format(
+      "{} ({}) enters: partial F {:.4g} of at least {:.4g}, R^2 {:.4f} -> {:.4f}, residuals taken "
+      "for white.",
+      first.name, diagnosis.sentences.front(), structure.partial_f, enters_from,
+      structure.r_squared_without, structure.r_squared);
+}
+
+/// Whether it is one time by which something is late.
+bool is_lag(const EffectFinding& effect) {
+  return effect.coefficients.size() == 1 && effect.coefficients.front().unit == "s" &&
+         effect.shapes.empty();
+}
+
+/// "the inertial unit's time is late by 14 ms"
+std::string lag_in_words(const EffectFinding& effect, std::string sentence) {
+  constexpr double milliseconds = 1e3;
+  constexpr std::string_view late = "late";
+  const double lag = milliseconds * effect.coefficients.front().estimate;
+  if (lag < 0.0 && sentence.ends_with(late)) {
+    sentence.replace(sentence.size() - late.size(), late.size(), "early");
+    return fmt::format("{} by {:.0f} ms", sentence, -lag);
+  }
+  return fmt::format("{} by {:.0f} ms", sentence, lag);
+}
+
+/// What stands first, and what it is. Lags that would do as well are one family: which of two
+/// clocks is wrong is no matter of what they differ by.
+std::string first_in_words(const FlightDiagnosis& diagnosis) {
+  const std::vector<EffectFinding>& effects = diagnosis.diagnosis.effects;
+  const EffectFinding& first = effects.front();
+  std::vector<std::string> names{first.name};
+  std::vector<std::string> words;
+  for (std::size_t i = 1; i < effects.size(); ++i) {
+    if (effects[i].beside != Beside::equivalent || !is_lag(first) || !is_lag(effects[i])) continue;
+    names.push_back(effects[i].name);
+    words.push_back(lag_in_words(effects[i], diagnosis.sentences[i]));
+  }
+  if (words.empty()) return fmt::format("{} ({})", first.name, diagnosis.sentences.front());
+  words.insert(words.begin(), lag_in_words(first, diagnosis.sentences.front()));
+  return fmt::format("{}, one lag that this flight can't place ({})", fmt::join(names, " or "),
+                     fmt::join(words, ", or "));
+}
+
 std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   const Diagnosis& found = diagnosis.diagnosis;
   if (found.residual.empty()) return "Nothing is missing: the model leaves no error.";
+  if (found.rule == DiagnosisRule::partial_f) return sentence_by_partial_f(diagnosis);
   const std::string injected =
       diagnosis.injection ? fmt::format("with {} injected, ", diagnosis.injection->effect) : "";
   const ErrorLeft all = error_of(found);
@@ -359,15 +413,19 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
   if (found.advice.effect != best.name && !diagnosis.injection) {
     const std::string against = reason_against(found, best.name);
     return fmt::format(
-        "{} ({}): {}; one step promises {:.0f} % less on rows held out, but it is not to be added: "
-        "{}.",
-        best.name, diagnosis.sentences.front(), best_left, 100.0 * best.held_out_gain,
+        "{}: {}; one step promises {:.0f} % less on rows held out, but it is not to be added: {}.",
+        first_in_words(diagnosis), best_left, 100.0 * best.held_out_gain,
         against.empty() ? "no fit with it was made" : against);
   }
+  const std::string partner =
+      found.advice.then.empty()
+          ? ""
+          : fmt::format(" and {}, sure together and not alone", found.advice.then);
   return fmt::format(
-      "{} ({}): {}; adding it should bring the error to {} ({:.0f} % less on rows held out, "
-      "{:.0f} % on all).",
-      best.name, diagnosis.sentences.front(), best_left,
+      "{}{}: {}; adding it should bring the error to {} ({:.0f} % less on rows held out, {:.0f} % "
+      "on "
+      "all).",
+      first_in_words(diagnosis), partner, best_left,
       with_unit(of_best.rmse * (1.0 - best.predicted_drop), of_best.unit),
       100.0 * best.held_out_gain, 100.0 * best.predicted_drop);
 }

@@ -78,27 +78,46 @@ struct StepwiseLoop {
     }
   }
 
+  /// Adds the effect that is promised and fits anew. Returns why that is no step; empty where it
+  /// is.
+  std::string take(Stepwise& course, Fitted& fitted, StepwiseStep step) const {
+    const std::string effect = step.promised.name;
+    try {
+      Fitted next = add(fitted, effect);
+      measure_step(fitted.fit, next.fit, !course.last.diagnosis.unit.empty(), step);
+      std::string objection = objection_to_step(fitted.fit, next.fit, step);
+      if (!objection.empty()) return objection;
+      fitted = std::move(next);
+    } catch (const Error& error) {
+      return effect + " can't be added: " + error.what();
+    }
+    course.steps.push_back(std::move(step));
+    return {};
+  }
+
+  /// The partner of what was added last: found with it, and not asked whether it is sure alone.
+  void take_partner(Stepwise& course, Fitted& fitted, const std::string& partner) const {
+    if (partner.empty() || course.steps.size() >= most) return;
+    const std::size_t among = course.last.diagnosis.effects.size();
+    const Diagnosis asked = diagnose(fitted, partner, among).diagnosis;
+    if (asked.effects.empty()) return;
+    const EffectFinding& promised = asked.effects.front();
+    if (promised.structure.partial_f >= enters_from) take(course, fitted, {.promised = promised});
+  }
+
   /// Where it ends, in `fitted` too.
   Stepwise run(Fitted& fitted) const {
     Stepwise course;
     fitted = base;
     course.last = diagnose(fitted, "", 0);
     while (const EffectFinding* const advised = next_effect(course, most)) {
-      StepwiseStep step{.promised = *advised, .as_good = list_as_good(course.last.diagnosis)};
-      try {
-        Fitted next = add(fitted, advised->name);
-        measure_step(fitted.fit, next.fit, !course.last.diagnosis.unit.empty(), step);
-        const std::string objection = objection_to_step(fitted.fit, next.fit, step);
-        if (!objection.empty()) {
-          finish(course, StepwiseEnd::fit_failed, objection);
-          return course;
-        }
-        fitted = std::move(next);
-      } catch (const Error& error) {
-        finish(course, StepwiseEnd::fit_failed, advised->name + " can't be added: " + error.what());
+      const std::string objection = take(
+          course, fitted, {.promised = *advised, .as_good = list_as_good(course.last.diagnosis)});
+      if (!objection.empty()) {
+        finish(course, StepwiseEnd::fit_failed, objection);
         return course;
       }
-      course.steps.push_back(std::move(step));
+      take_partner(course, fitted, course.last.diagnosis.advice.then);
       drop_what_fades(course, fitted);
       course.last = diagnose(fitted, "", 0);
     }
