@@ -74,9 +74,13 @@ def _run(options: argparse.Namespace, report_progress: Progress) -> Outcome:
         figures.append(f"{condition}: {text}")
         if condition == "light gusts":  # the others ask how much less a flight tells
             findings.append(
-                Finding(condition, f"{found} of {options.seeds} found", f"at least {LEAST_FOUND:.0%}",
-                        found >= LEAST_FOUND * options.seeds)
-            )  # fmt: skip
+                Finding(
+                    condition,
+                    f"{found} of {options.seeds} found",
+                    f"at least {LEAST_FOUND:.0%}",
+                    found >= LEAST_FOUND * options.seeds,
+                )
+            )
     findings.append(
         Finding("lags found where none is", f"{false} of {flown}", f"at most {MOST_FALSE:.0%}",
                 false <= MOST_FALSE * flown)
