@@ -44,7 +44,7 @@ double cost_with_prior(const Scoring& scoring, const Scored& at);
 Scored score_at(const Scoring& scoring, const Eigen::VectorXd& theta);
 
 /// From theta, which is clipped to the box. Logarithms of noises move by at most 1 a step; one that
-/// falls and falls goes to its lower bound at once where V_m is lower there.
+/// falls and falls goes farther, as far as its lower bound, where V_m is lower there.
 Scored minimise_by_scoring(const Scoring& scoring, const Eigen::VectorXd& theta);
 
 /// V_m's second derivatives (k x k) by central differences of the gradient, with the prior's, at
