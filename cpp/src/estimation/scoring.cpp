@@ -97,25 +97,30 @@ void find_bounds(const Scoring& scoring, Scored& at) {
 /// explain an output completely.
 bool is_sinking(double step, double last) {
   constexpr double all_the_way = -0.999;
-  constexpr double steadily = -0.3;
+  constexpr double steadily = -0.1;
   return step <= all_the_way || (step <= steadily && last <= steadily);
 }
 
-/// The point `to` with the noises that are on their way at their floors; empty where none is.
-VectorXd sunk(const Scoring& scoring, const VectorXd& to, const VectorXd& step,
-              const VectorXd& last) {
+/// Points beyond `to` with the noises that are on their way further along it, the farthest, their
+/// floors, first: what else has to move with them may bear no more than a part of the way. None
+/// where none sinks.
+std::vector<VectorXd> beyond(const Scoring& scoring, const VectorXd& to, const VectorXd& step,
+                             const VectorXd& last) {
   const Index logarithms = scoring.model.size() - scoring.model.noises() - scoring.model.outputs();
-  VectorXd result = to;
-  bool any = false;
-  for (Index i = 0; i < step.size(); ++i) {
-    const Index place = scoring.free[static_cast<std::size_t>(i)];
-    const double floor = scoring.box.lower[place];
-    if (place < logarithms || !std::isfinite(floor) || to[place] <= floor) continue;
-    if (!is_sinking(step[i], last.size() == 0 ? 0.0 : last[i])) continue;
-    result[place] = floor;
-    any = true;
+  std::vector<VectorXd> points;
+  for (const double times : {std::numeric_limits<double>::infinity(), 8.0, 3.0}) {
+    VectorXd point = to;
+    for (Index i = 0; i < step.size(); ++i) {
+      const Index place = scoring.free[static_cast<std::size_t>(i)];
+      const double floor = scoring.box.lower[place];
+      if (place < logarithms || !std::isfinite(floor)) continue;
+      if (!is_sinking(step[i], last.size() == 0 ? 0.0 : last[i])) continue;
+      point[place] = std::max(floor, to[place] + times * step[i]);
+    }
+    if (point == to) return {};
+    points.push_back(std::move(point));
   }
-  return any ? result : VectorXd();
+  return points;
 }
 
 /// Below this two values of V_m can't be told apart.
@@ -161,10 +166,10 @@ Scored minimise_by_scoring(const Scoring& scoring, const VectorXd& theta) {
       at.converged = true;
       break;
     }
-    // Steps contract, and the next one is too short to tell from none.
-    const double ratio = left_before > 0.0 ? left / left_before : 1.0;
-    constexpr double contracting = 0.1;
-    const bool is_last = ratio < contracting && left * ratio <= scoring.promise;
+    // Steps contract: this one is so short that the factor stays as it is, and the next no step.
+    constexpr double short_step = 1e-10;  // 1.4e-5 standard errors
+    const double ratio = left_before > 0.0 ? std::max(left / left_before, 1e-4) : 1.0;
+    const bool is_last = left <= short_step && left * ratio <= scoring.promise;
     constexpr double most_damping = 1e8;
     Scored next;
     VectorXd taken;
@@ -176,7 +181,7 @@ Scored minimise_by_scoring(const Scoring& scoring, const VectorXd& theta) {
       const double before = whole_cost(scoring, at.cost, at.theta);
       // What V_m can't resolve any more the gradient still does.
       const double slack = step.promise < resolution(at) ? resolution(at) : 0.0;
-      double after = whole_cost(scoring, scoring.model.value(to).cost, to);
+      const double after = whole_cost(scoring, scoring.model.value(to).cost, to);
       lower = after <= before - 1e-4 * step.promise + slack;
       whole = lower && damping == 0.0;
       if (is_last && whole) {
@@ -186,13 +191,12 @@ Scored minimise_by_scoring(const Scoring& scoring, const VectorXd& theta) {
         ++at.iterations;
         return at;
       }
-      if (const VectorXd floored = sunk(scoring, to, step.x, last); lower && floored.size() > 0) {
-        const double there = whole_cost(scoring, scoring.model.value(floored).cost, floored);
-        if (there < after) {
-          to = floored;
-          after = there;
-          whole = false;
-        }
+      for (const VectorXd& point :
+           lower ? beyond(scoring, to, step.x, last) : std::vector<VectorXd>()) {
+        if (!(whole_cost(scoring, scoring.model.value(point).cost, point) < after)) continue;
+        to = point;
+        whole = false;
+        break;
       }
       if (lower) {
         next = score_at(scoring, to);
