@@ -151,7 +151,7 @@ class Pitching:
     inputs: ClassVar = {"alpha_m": "rad", "elevator": "rad", "q": "rad/s"}
     outputs: ClassVar = {"q_m": "rad/s"}
     linear: ClassVar = {"Ma": "1/s^2", "Mq": "1/s", "Md": "1/s^2", "c": "rad/s^2"}
-    nonlinear: ClassVar = {}
+    nonlinear: ClassVar[dict[str, str]] = {}
 
     def at(self, u: Any, _: Any) -> tuple[Array, Array]:  # noqa: ANN401
         """A and b."""

@@ -125,7 +125,8 @@ def solve_band(rows: Array) -> Array:
     A = np.column_stack([wave @ columns, ends])
     parts = np.vstack([A.real, A.imag])
     unit = np.linalg.norm(parts, axis=0)
-    return (np.linalg.lstsq(parts / unit, np.r_[z.real, z.imag], rcond=None)[0] / unit)[:3]
+    found = np.linalg.lstsq(parts / unit, np.r_[z.real, z.imag], rcond=None)[0] / unit
+    return np.asarray(found[:3])
 
 
 def check_band(folder: Path, checks: Checks) -> list[str]:

@@ -23,7 +23,7 @@ class Moment:
     inputs: ClassVar = {"alpha": "rad", "q": "rad/s", "elevator": "rad"}
     outputs: ClassVar = {"c": "1"}
     linear: ClassVar = {"c_alpha": "1", "c_q": "1", "c_elevator": "1", "c_0": "1"}
-    nonlinear: ClassVar = {}
+    nonlinear: ClassVar[dict[str, str]] = {}
 
     def at(self, u: Any, _: Any) -> tuple[Array, Array]:
         """A and b."""

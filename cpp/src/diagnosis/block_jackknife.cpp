@@ -75,8 +75,8 @@ double log10_block_tail(const NullHypothesis& null, MatrixXd columns) {
   const MatrixXd B = orthonormal_basis(remove_span(null.white_basis, columns));
   const Index m = B.cols();
   if (m == 0) return 0.0;
-  const double memory = null.fit().follows_path ? rows_together(layout, B, beside)
-                                                : correlation_rows(layout, beside);
+  const double memory =
+      null.fit().follows_path ? rows_together(layout, B, beside) : correlation_rows(layout, beside);
   const Index blocks = count_blocks(layout.rows, memory);
   const VectorXd estimate = B.transpose() * null.white_residual;
   const VectorXd left = null.white_residual - B * estimate;

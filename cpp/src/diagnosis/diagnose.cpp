@@ -4,12 +4,14 @@
 // passes those that a path has bent to, then pairs; fit the few that pass; and where nothing does,
 // ask whether a real fit of anything speaks against the model, and whether anything is there.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <functional>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include "base/stop.hpp"
@@ -630,8 +632,8 @@ void Recipe::conclude() {
 void Recipe::take_apart() {
   const auto pair = std::ranges::find(result_.effects, result_.advice.effect, &EffectFinding::name);
   if (pair == result_.effects.end()) return;
-  const EffectFinding both = *pair;
-  std::vector<std::string> names = split_effects(both.name);
+  const std::array both{pair->log10_p, pair->p_value, pair->p_adjusted, pair->p_listed};
+  std::vector<std::string> names = split_effects(pair->name);
   if (names.size() != 2) return;
   const auto find = [&](const std::string& name) {
     return std::ranges::find(result_.effects, name, &EffectFinding::name);
@@ -646,10 +648,8 @@ void Recipe::take_apart() {
     if (trial.folds.count == 0) hold_out(testing_.room(), testing_.null(), trial);
     tell_held_out(trial, *finding);
     finding->status = FindingStatus::found;
-    finding->log10_p = both.log10_p;
-    finding->p_value = both.p_value;
-    finding->p_adjusted = both.p_adjusted;
-    finding->p_listed = both.p_listed;
+    std::tie(finding->log10_p, finding->p_value, finding->p_adjusted, finding->p_listed) =
+        std::tuple_cat(both);
     finding->beside = name == names[1] ? Beside::counts : Beside::untried;
     std::rotate(result_.effects.begin(), finding, finding + 1);
   }

@@ -129,7 +129,8 @@ class RecursiveBand {
     factor.parts =
         Scalar(2 * omega_.size()) / shared - spent + (has_constant ? Scalar(1) : Scalar(0));
 
-    // Where frequencies are multiples of one over the rows' length, nothing is left of the constant.
+    // Where frequencies are multiples of one over the rows' length, nothing is left of the
+    // constant.
     if (X_.col(k + 1).norm() <= Scalar(1e4) * states::rounding<Scalar> * squares_)
       rows.col(0).setZero();
     if (has_constant) rows.bottomRightCorner(1, k + 1) = sums_.transpose() / std::sqrt(squares_);

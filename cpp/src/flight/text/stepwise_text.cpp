@@ -13,7 +13,6 @@ namespace sepcal {
 using base::joined;
 using base::Page;
 using base::page;
-using text::defined;
 
 namespace {
 

@@ -44,8 +44,8 @@ auto product(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b,
 
 /// to += factor from, of columns; nothing where the factor is zero.
 template <class From, class To>
-void add_times(double factor, const From& from, To&& to) {
-  if (factor != 0.0) to += factor * from;
+void add_times(double factor, const From& from, const Eigen::MatrixBase<To>& to) {
+  if (factor != 0.0) to.const_cast_derived() += factor * from;  // a column may be a temporary view
 }
 
 /// Of a matrix with n rows the slopes by many variables: a row a variable, a column an entry,

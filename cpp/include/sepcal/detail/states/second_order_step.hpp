@@ -200,6 +200,59 @@ void add_noise(SecondOrderStep<NX, NV, N>& step, const SecondOrderNoise<NX, NW, 
   states::add_times_slopes(slope, noise.slopes, of_slope);
 }
 
+/// Of the rate at a stage whose states have the derivatives a and b, those by all directions.
+template <class Values, class Slopes, class Curvatures>
+void compose_stage(const Values& rate, const Slopes& a, const Curvatures& b, Slopes& first,
+                   Curvatures& second) {
+  const Eigen::Index directions = a.rows();
+  const Eigen::Index f = a.cols();
+  first.setZero(directions, f);
+  second.setZero(directions, f * f);
+  Curvatures W = Curvatures::Zero(directions, f * f);
+  first.bottomRows(directions - f) = rate.slopes.bottomRows(directions - f);
+  W.bottomRows(directions - f) = rate.curvatures.bottomRows(directions - f);
+  for (Eigen::Index i = 0; i < f; ++i) {
+    for (Eigen::Index k = 0; k < f; ++k)
+      states::add_times(rate.slopes(k, i), a.col(k), first.col(i));
+  }
+  for (Eigen::Index entry = 0; entry < f * f; ++entry) {
+    for (Eigen::Index k = 0; k < f; ++k) {
+      states::add_times(rate.curvatures(k, entry), a.col(k), W.col(entry));
+    }
+  }
+  for (Eigen::Index j = 0; j < f; ++j) {
+    for (Eigen::Index i = 0; i < f; ++i) {
+      for (Eigen::Index k = 0; k < f; ++k) {
+        states::add_times(rate.slopes(k, i), b.col(k + f * j), second.col(i + f * j));
+        states::add_times(a(j, k), W.col(i + f * k), second.col(i + f * j));
+      }
+    }
+  }
+}
+
+/// Puts a step's end and its derivatives a and b where `step` has them; `columns`: of the places'
+/// parameters those that have directions.
+template <class Step, class State, class Slopes, class Curvatures>
+void put_end(const SecondOrderPlaces& places, std::span<const Eigen::Index> columns,
+             const State& end, const Slopes& a, const Curvatures& b, Step& step) {
+  const auto f = static_cast<Eigen::Index>(places.states.size());
+  const auto n = static_cast<Eigen::Index>(places.parameters.size());
+  step.x.resize(f);
+  for (Eigen::Index i = 0; i < f; ++i) {
+    step.x[i] = end[places.states[static_cast<std::size_t>(i)]];
+  }
+  step.Phi = a.topRows(f).transpose();
+  step.Pi.setZero(f, n);
+  step.Phi_slopes.setZero(f + n, f * f);
+  step.Phi_slopes.topRows(f) = b.topRows(f);
+  Eigen::Index row = f;
+  for (const Eigen::Index column : columns) {
+    step.Pi.col(column) = a.row(row).transpose();
+    step.Phi_slopes.row(f + column) = b.row(row);
+    ++row;
+  }
+}
+
 /// Fills all of `step` but Gamma, which add_noise() does, and returns the model's whole state at
 /// the next row, measured ones too.
 template <StateModel M, class Step>
@@ -234,50 +287,6 @@ Vec<double, StateSizes<M>::n_x> second_order_step(const M& model,
   A.topRows(f).setIdentity();
   Curvatures B = Curvatures::Zero(directions, f * f);
   Values rate;  // at a stage
-  Curvatures W;
-  /// Of the rate at a stage whose states have the derivatives a and b, those by all directions.
-  const auto compose = [&](const Slopes& a, const Curvatures& b, Slopes& first,
-                           Curvatures& second) {
-    first.setZero(directions, f);
-    second.setZero(directions, f * f);
-    W.setZero(directions, f * f);
-    first.bottomRows(directions - f) = rate.slopes.bottomRows(directions - f);
-    W.bottomRows(directions - f) = rate.curvatures.bottomRows(directions - f);
-    for (Eigen::Index i = 0; i < f; ++i) {
-      for (Eigen::Index k = 0; k < f; ++k) {
-        states::add_times(rate.slopes(k, i), a.col(k), first.col(i));
-      }
-    }
-    for (Eigen::Index entry = 0; entry < f * f; ++entry) {
-      for (Eigen::Index k = 0; k < f; ++k) {
-        states::add_times(rate.curvatures(k, entry), a.col(k), W.col(entry));
-      }
-    }
-    for (Eigen::Index j = 0; j < f; ++j) {
-      for (Eigen::Index i = 0; i < f; ++i) {
-        for (Eigen::Index k = 0; k < f; ++k) {
-          states::add_times(rate.slopes(k, i), b.col(k + f * j), second.col(i + f * j));
-          states::add_times(a(j, k), W.col(i + f * k), second.col(i + f * j));
-        }
-      }
-    }
-  };
-  const auto finish = [&](const Vec<double, n_x>& end, const Slopes& a, const Curvatures& b) {
-    const auto n = static_cast<Eigen::Index>(places.parameters.size());
-    step.x.resize(f);
-    for (Eigen::Index i = 0; i < f; ++i) {
-      step.x[i] = end[places.states[static_cast<std::size_t>(i)]];
-    }
-    step.Phi = a.topRows(f).transpose();
-    step.Pi.setZero(f, n);
-    step.Phi_slopes.setZero(f + n, f * f);
-    step.Phi_slopes.topRows(f) = b.topRows(f);
-    for (std::size_t k = 0; k < m; ++k) {
-      const auto row = f + static_cast<Eigen::Index>(k);
-      step.Pi.col(columns[k]) = a.row(row).transpose();
-      step.Phi_slopes.row(f + columns[k]) = b.row(row);
-    }
-  };
   const auto differentiate = [&](const auto& function, const Vec<double, n_x>& at) {
     states::differentiate_twice<n_x, n_p, inner, outer>(
         function, at, p, places.states, places.states, parameters, places.curves, rate);
@@ -292,8 +301,8 @@ Vec<double, StateSizes<M>::n_x> second_order_step(const M& model,
         x);
     Slopes first;
     Curvatures second;
-    compose(A, B, first, second);
-    finish(end, first, second);
+    compose_stage(rate, A, B, first, second);
+    put_end(places, {columns.data(), m}, end, first, second, step);
     Vec<double, n_x> whole = end;
     between.put_measured_at_end(whole);
     return whole;
@@ -325,11 +334,11 @@ Vec<double, StateSizes<M>::n_x> second_order_step(const M& model,
           k[places.states[static_cast<std::size_t>(i)]] = rate.value[i];
         }
         if (stage == 0) {
-          compose(A, B, first, second);
+          compose_stage(rate, A, B, first, second);
         } else {
           const Slopes a = A + h * first;
           const Curvatures b = B + h * second;
-          compose(a, b, first, second);
+          compose_stage(rate, a, b, first, second);
         }
         sum += weights[stage] * k;
         sum_first += weights[stage] * first;
@@ -340,7 +349,7 @@ Vec<double, StateSizes<M>::n_x> second_order_step(const M& model,
       B += dt / 6.0 * sum_second;
     }
     between.put_measured_at_end(begin);
-    finish(begin, A, B);
+    put_end(places, {columns.data(), m}, begin, A, B, step);
     return begin;
   }
 }
