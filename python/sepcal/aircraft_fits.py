@@ -711,7 +711,7 @@ class TwoSteps(Page):
             >>> flight = sepcal.simulate(aircraft, rows=800)
             >>> steps = sepcal.two_step(flight, aircraft, equations={"CZ": ["1", "alpha"]})
             >>> steps.track(start_rows=400).names[-2:]
-            ['CZ[1]', 'CZ[alpha]']
+            ('CZ_0', 'CZ_alpha')
         """
         chosen = self.path._or_fitted(flight, "track(")
         options = track_options(
