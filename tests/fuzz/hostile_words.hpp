@@ -47,14 +47,16 @@ inline bool may_not_be_printed(char32_t code) {
 }
 
 /// The same word without what must not be printed: of as many bytes, with the same blanks and the
-/// same punctuation, so that whatever is decided by a name is decided alike.
+/// same punctuation, so that whatever is decided by a name is decided alike. A tab becomes a blank
+/// but after a semicolon: "; " parts the sentences of a message.
 inline std::string plain_of(std::string_view word) {
   std::string plain;
   for (std::size_t at = 0; at < word.size();) {
     const auto [code, length] = decode(word.substr(at));
     const std::size_t taken = length == 0 ? 1 : length;
     if (length == 0 || may_not_be_printed(code)) {
-      plain += word[at] == '\t' ? std::string(1, ' ') : std::string(taken, 'x');
+      const bool is_blank = word[at] == '\t' && !plain.ends_with(';');
+      plain += is_blank ? std::string(1, ' ') : std::string(taken, 'x');
     } else {
       plain += word.substr(at, taken);
     }
