@@ -251,7 +251,7 @@ class NestedDual {
   Slopes& mixed_at(int i) { return mixed_[static_cast<std::size_t>(i)]; }
   const Slopes& mixed_at(int i) const { return mixed_[static_cast<std::size_t>(i)]; }
 
-  void take_outer(const NestedDual& x) {
+  [[gnu::noinline]] void take_outer(const NestedDual& x) {
     first_ = x.first_;
     last_ = x.last_;
     for (int i = first_; i < last_; ++i) {
@@ -261,7 +261,7 @@ class NestedDual {
   }
 
   /// `value` with all derivatives times a factor.
-  NestedDual scaled(double value, double factor) const {
+  [[gnu::noinline]] NestedDual scaled(double value, double factor) const {
     NestedDual z{Unset()};
     z.value_ = value;
     z.slopes_ = factor * slopes_;
@@ -275,7 +275,7 @@ class NestedDual {
   }
 
   /// A function's value here and its derivatives: the chain rule.
-  NestedDual chain(double value, double slope, double curvature) const {
+  [[gnu::noinline]] NestedDual chain(double value, double slope, double curvature) const {
     NestedDual z{Unset()};
     z.value_ = value;
     z.slopes_ = slope * slopes_;
@@ -305,7 +305,8 @@ class NestedDual {
   }
 
   /// x + sign y.
-  static NestedDual sum(const NestedDual& x, const NestedDual& y, double value, double sign) {
+  [[gnu::noinline]] static NestedDual sum(const NestedDual& x, const NestedDual& y, double value,
+                                          double sign) {
     NestedDual z{Unset()};
     z.value_ = value;
     z.slopes_ = x.slopes_ + sign * y.slopes_;
@@ -324,8 +325,9 @@ class NestedDual {
     return z;
   }
 
-  static NestedDual combine(const NestedDual& x, const NestedDual& y, double value,
-                            const Partials& by, const Changes& change) {
+  [[gnu::noinline]] static NestedDual combine(const NestedDual& x, const NestedDual& y,
+                                              double value, const Partials& by,
+                                              const Changes& change) {
     NestedDual z{Unset()};
     z.value_ = value;
     z.slopes_ = by.x * x.slopes_ + by.y * y.slopes_;
