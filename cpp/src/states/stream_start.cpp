@@ -11,6 +11,7 @@
 #include "model/sweep.hpp"
 #include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/error.hpp"
+#include "states/restricted_likelihood.hpp"
 
 namespace sepcal {
 namespace {
@@ -108,7 +109,11 @@ StreamStart start_from_rows(const BlockModel& model, const Record& record, std::
                             const FitOptions& options) {
   check_rows(record, rows);
   const Record batch = first_rows(record, rows);
-  const Fit fit = sepcal::fit(model, batch, options);
+  Fit fit = sepcal::fit(model, batch, options);
+  if (options.method == FitMethod::filter_error && fit.status == FitStatus::converged &&
+      !states::tells_process_noises(fit)) {
+    fit = states::fit_restricted(model, batch, options, fit);
+  }
   if (fit.status == FitStatus::not_identifiable) {
     const std::vector<std::string> open = open_in(fit);
     throw Error("the first " + std::to_string(rows) + " rows leave " +
