@@ -38,8 +38,7 @@ class Magnetometer final : public Instrument {
       if (is_mounting_given()) {
         throw Error(
             "--mounting is of no use to --field-strength: a strength is the same however the "
-            "sensor "
-            "is turned; leave it out");
+            "sensor is turned; leave it out");
       }
       if (!field_.empty()) {
         throw Error(

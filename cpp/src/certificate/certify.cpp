@@ -241,8 +241,7 @@ void BranchAndBound::conclude() {
   } else {
     result_.message = fmt::format(
         "not proven within {} boxes: the least cost may be lower by up to {}; ask for more boxes, "
-        "or "
-        "narrow the bounds",
+        "or narrow the bounds",
         result_.boxes, gap);
   }
 }

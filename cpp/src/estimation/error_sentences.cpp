@@ -124,8 +124,7 @@ std::string describe_rows(const model::Sweep& sweep) {
   if (rows < few) {
     return "standard errors of " + std::to_string(rows) +
            " rows are too small: estimate -+ 1.96 of them holds the truth in about 90 % (of 12 "
-           "rows "
-           "in 87 %)";
+           "rows in 87 %)";
   }
   if (runs == 1 || rows / runs >= piece) return "";
   return "gaps cut the record into " + std::to_string(runs) + " pieces of about " +

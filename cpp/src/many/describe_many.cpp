@@ -144,8 +144,7 @@ class Description {
       open = true;
       sentences.emplace_back(
           "the flights have no more measurements than parameters, which leaves nothing to judge "
-          "the "
-          "fit by (log more, or fix parameters)");
+          "the fit by (log more, or fix parameters)");
     }
     result_.status = open                 ? FitStatus::not_identifiable
                      : stage_.converged() ? FitStatus::converged

@@ -69,11 +69,6 @@ void check_linearised(const TrackOptions& options) {
   if (!options.initial_states.empty()) refuse(options.initial_states.begin()->first, "state");
 }
 
-/// Of states and their covariance.
-bool is_filter(TrackMethod method) {
-  return method == TrackMethod::ekf || method == TrackMethod::iekf || method == TrackMethod::srif;
-}
-
 constexpr double least_memory = 20.0;  // rows
 
 void check_memory(const TrackOptions& options) {

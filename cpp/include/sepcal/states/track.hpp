@@ -28,6 +28,11 @@ enum class TrackMethod {
   rft    // recursive Fourier transform: equation error over a band. Of models that are linear
 };
 
+/// Whether it is a Kalman filter, of states and their covariance.
+constexpr bool is_filter(TrackMethod method) {
+  return method == TrackMethod::ekf || method == TrackMethod::iekf || method == TrackMethod::srif;
+}
+
 template <>
 struct ChoiceNames<TrackMethod> {
   static constexpr std::array<std::string_view, 6> names{"rls",  "ekf", "iekf",

@@ -85,8 +85,7 @@ void note_slow(const Log& log, const SlowColumns& group, const std::vector<SlowC
   } else if (group.held) {
     note.effect = fmt::format(
         "repeats count as measurements: the white standard errors are up to {:.2g} times too "
-        "small, "
-        "and on average a row is {:.2g} s late",
+        "small, and on average a row is {:.2g} s late",
         std::sqrt(rate), 0.5 * (rate - 1) * interval);
     note.advice = "take the rows in which the slowest is new: " + drop_repeats(groups);
   } else {

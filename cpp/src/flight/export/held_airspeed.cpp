@@ -188,8 +188,7 @@ FittedAirspeed fit_airspeed(const Calibration& calibration, const Flight& flight
   }
   throw Error(
       "the airspeed of an SDP3x and its offset do not settle when fitted in turn; fit a flight "
-      "with "
-      "more airspeeds");
+      "with more airspeeds");
 }
 
 }  // namespace sepcal::exporting

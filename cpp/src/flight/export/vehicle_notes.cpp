@@ -171,8 +171,7 @@ std::vector<std::string> airspeed_notes(const ChosenTubeReader& chosen,
     const bool is_true = reader.logged == LoggedAirspeed::true_airspeed;
     notes.push_back(fmt::format(
         "what was read is a logged airspeed, taken as the {} one, read with {}; give the one in "
-        "use "
-        "where the autopilot that logged it had another",
+        "use where the autopilot that logged it had another",
         is_true ? "true" : "equivalent",
         px4 ? "an ASPD_SCALE of 1"
             : fmt::format("an ARSPD_RATIO of {:.4g}", plain_ratio_of(reader.sensor.flows()))));

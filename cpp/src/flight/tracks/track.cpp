@@ -122,17 +122,14 @@ TrackedFlight track(const Calibration& calibration, const Flight& flight,
   if (options.start_rows == 0 && has_wind) {
     tracked.notes.emplace_back(
         "every parameter begins as the calibration has it, the wind of its flight too; find what "
-        "is "
-        "this flight's own in its first rows: --start-rows N --own wind");
+        "is this flight's own in its first rows: --start-rows N --own wind");
   }
   const StreamStart start = start_of(calibration, flight, effective, options);
   tracked.track = sepcal::track(*effective.model, record, start, options.how);
   for (const std::string& name : tracked.track.names) {
     tracked.table.push_back(*std::ranges::find(known, name, &Variable::name));
   }
-  tracks::set_flight_rows(tracked, prepared.readings.flight_rows);
-  tracks::note_colour(tracked);
-  tracks::note_drift(tracked);
+  tracks::place_in_flight(tracked, prepared.readings.flight_rows);
   return tracked;
 }
 

@@ -31,9 +31,8 @@ double lag_one(const VectorXd& e) {
   return pairs < fewest || square == 0.0 ? 0.0 : product / square;
 }
 
-}  // namespace
-
-void set_flight_rows(TrackedFlight& tracked, const std::vector<std::size_t>& flight_rows) {
+/// The flight's rows of the track and of its changes.
+void set_rows(TrackedFlight& tracked, const std::vector<std::size_t>& flight_rows) {
   for (const std::size_t row : tracked.track.rows) {
     tracked.flight_rows.push_back(flight_rows[row]);
   }
@@ -43,6 +42,8 @@ void set_flight_rows(TrackedFlight& tracked, const std::vector<std::size_t>& fli
   }
 }
 
+/// Adds a note where neighbouring innovations of an output correlate, as in gusts: the filter then
+/// takes each row for news, and its standard deviations are too small.
 void note_colour(TrackedFlight& tracked) {
   constexpr double white = 0.2;
   for (std::size_t j = 0; j < tracked.outputs.size(); ++j) {
@@ -51,13 +52,13 @@ void note_colour(TrackedFlight& tracked) {
     // Of an exponential correlation the mean of n rows is as good as that of n (1 - r) / (1 + r).
     tracked.notes.push_back(fmt::format(
         "innovations of {} correlate from row to row ({:.2f}; white noise 0), as in gusts: "
-        "standard "
-        "deviations are too small, by a factor of up to {:.2g}; let what moves walk (--walk "
-        "NAME=SD), or take every n-th row",
+        "standard deviations are too small, by a factor of up to {:.2g}; let what moves walk "
+        "(--walk NAME=SD), or take every n-th row",
         tracked.outputs[j].name, r, std::sqrt((1.0 + r) / std::max(1e-3, 1.0 - r))));
   }
 }
 
+/// Adds a note where a parameter jumped three times or more, always the same way: it drifts.
 void note_drift(TrackedFlight& tracked) {
   constexpr std::size_t fewest = 3;
   struct Jumps {
@@ -86,6 +87,14 @@ void note_drift(TrackedFlight& tracked) {
         "{} jumped {} times, always {}: it drifts; let it walk, --walk {}={:.2g}", name,
         jumps.sizes.size(), up > 0 ? "up" : "down", name, std::sqrt(squares / seconds)));
   }
+}
+
+}  // namespace
+
+void place_in_flight(TrackedFlight& tracked, const std::vector<std::size_t>& flight_rows) {
+  set_rows(tracked, flight_rows);
+  note_colour(tracked);
+  note_drift(tracked);
 }
 
 }  // namespace sepcal::tracks

@@ -9,14 +9,8 @@
 
 namespace sepcal::tracks {
 
-/// Sets the flight's rows of a track and of its changes. `flight_rows`: of each row of the record.
-void set_flight_rows(TrackedFlight& tracked, const std::vector<std::size_t>& flight_rows);
-
-/// Adds a note where neighbouring innovations of an output correlate, as in gusts: the filter then
-/// takes each row for news, and its standard deviations are too small.
-void note_colour(TrackedFlight& tracked);
-
-/// Adds a note where a parameter jumped three times or more, always the same way: it drifts.
-void note_drift(TrackedFlight& tracked);
+/// Sets the flight's rows of a track and of its changes, and adds notes where innovations correlate
+/// and where a parameter drifts. `flight_rows`: of each row of the record.
+void place_in_flight(TrackedFlight& tracked, const std::vector<std::size_t>& flight_rows);
 
 }  // namespace sepcal::tracks

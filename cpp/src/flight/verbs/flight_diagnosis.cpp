@@ -423,8 +423,7 @@ std::string verdict_sentence(const FlightDiagnosis& diagnosis) {
           : fmt::format(" and {}, sure together and not alone", found.advice.then);
   return fmt::format(
       "{}{}: {}; adding it should bring the error to {} ({:.0f} % less on rows held out, {:.0f} % "
-      "on "
-      "all).",
+      "on all).",
       first_in_words(diagnosis), partner, best_left,
       with_unit(of_best.rmse * (1.0 - best.predicted_drop), of_best.unit),
       100.0 * best.held_out_gain, 100.0 * best.predicted_drop);
