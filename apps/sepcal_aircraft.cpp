@@ -102,6 +102,9 @@ class ModelArguments {
         ->capture_default_str();
     verb.add_flag("--scale-about-start", options_.trajectory.scales_about_start,
                   "scales multiply the change since the segment's start, as SIDPAC has them");
+    verb.add_flag("--position", options_.position,
+                  "of path: the position is integrated too, and compared with north_m, east_m and "
+                  "down_m, or with lat, lon and altitude");
     verb.add_option("--gravity", options_.gravity, "at the place of the flight [m/s^2]")
         ->type_name("G")
         ->capture_default_str();

@@ -835,7 +835,7 @@ def two_step(
     aero = Aero(aircraft, equations=equations, window=window)
     first = (path or FlightPath())._aircraft_options()
     laid = {**aero._aircraft_options(), "trajectory": first["trajectory"]}
-    laid["gravity"] = first["gravity"]
+    laid["position"], laid["gravity"] = first["position"], first["gravity"]
     core = states_module().two_steps(chosen._core, _with_fit(laid, options))
     return TwoSteps(core, chosen)
 

@@ -150,7 +150,9 @@ class FlightPath(TrajectoryModel):
     is exchanged for psi_0 exactly. Initial states start at the first readings.
 
     Args:
-        position: x y z are states, and north, east, down outputs; the wind is nonlinear then.
+        position: x y z are states, and north, east, down outputs; the wind is nonlinear then. Of a
+            Flight these are logged in metres, or made of lat, lon and altitude; a velocity that
+            comes from the same fixes is then no output.
         gravity: At the place of the flight [m/s^2].
         vane: Where the flow is measured, from the inertial unit, body axes [m].
         aircraft: In place of `vane`, where both are; with it apply() gives the coefficients too.
@@ -191,8 +193,6 @@ class FlightPath(TrajectoryModel):
 
     def _aircraft_options(self) -> dict[str, Any]:
         """As sepcal._states lays it along a Flight. Raises Error for what a Flight can't have."""
-        if self.position:
-            raise _core.Error("of a flight a path has no position; give its columns by name")
         if self.aircraft is None and any(self.vane):
             raise _core.Error("of a flight the vane's place is the aircraft's: give aircraft=...")
         return {
@@ -200,6 +200,7 @@ class FlightPath(TrajectoryModel):
             "geometry": self.aircraft.to_json() if self.aircraft else None,
             "equations": {},
             "trajectory": to_core_options(self.options),
+            "position": self.position,
             "gravity": self.gravity,
             "window": 0.0,
             "band": None,

@@ -13,16 +13,18 @@
 namespace sepcal {
 namespace {
 
+template <class Path>
 TrajectoryOptions complete(TrajectoryOptions path, const Record& record) {
   if (path.outputs.empty()) {
-    for (const Quantity& output : FlightPath::outputs) {
+    for (const Quantity& output : Path::outputs) {
       if (record.has(output.name)) path.outputs.emplace_back(output.name);
     }
   }
   if (path.outputs.empty()) {
     throw Error("the record has none of a flight path's outputs, as airspeed or pitch; add them");
   }
-  const bool heading = base::is_among(path.outputs, "yaw") || base::is_among(path.outputs, "vn");
+  const bool heading = base::is_among(path.outputs, "yaw") || base::is_among(path.outputs, "vn") ||
+                       base::is_among(path.outputs, "north");
   if (!heading && !base::is_among(path.measured, "psi")) path.measured.emplace_back("psi");
   return path;
 }
@@ -93,12 +95,19 @@ std::map<std::string, double> noise_of_readings(const Record& record) {
 
 PathTrajectory lay_path(const Record& record, const PathOptions& options) {
   PathTrajectory laid{{}, with_states(record), options.fit, {}};
-  laid.model = std::make_shared<const TrajectoryModel<FlightPath>>(
-      FlightPath{.gravity = options.gravity, .vane = options.vane}, laid.record,
-      complete(options.trajectory, laid.record));
-  for (const auto& [name, value] : laid.model->initial_states(laid.record)) {
-    laid.initial_states.push_back(name);
-    laid.fit.start.emplace(name, value);
+  const auto lay = [&]<class Path>(const Path& path) {
+    const auto model = std::make_shared<const TrajectoryModel<Path>>(
+        path, laid.record, complete<Path>(options.trajectory, laid.record));
+    for (const auto& [name, value] : model->initial_states(laid.record)) {
+      laid.initial_states.push_back(name);
+      laid.fit.start.emplace(name, value);
+    }
+    laid.model = model;
+  };
+  if (options.position) {
+    lay(FlightPathWithPosition{.gravity = options.gravity, .vane = options.vane});
+  } else {
+    lay(FlightPath{.gravity = options.gravity, .vane = options.vane});
   }
   aircraft::hold_at_zero(held_of_path(laid.model->tables().linear), options.free, laid.fit);
   return laid;

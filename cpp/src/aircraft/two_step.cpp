@@ -38,6 +38,7 @@ CoefficientOptions wanted_of(const TwoStepOptions& options) {
 PathTrajectory path_of(const Record& record, const AircraftGeometry& geometry,
                        const TwoStepOptions& options) {
   return lay_path(record, {.trajectory = options.path,
+                           .position = options.position,
                            .gravity = options.gravity,
                            .vane = geometry.vane - geometry.imu,
                            .free = options.free,

@@ -33,13 +33,14 @@ using Equations = std::map<std::string, std::vector<std::string>>;
 AircraftOptions aircraft_options(const std::string& model,
                                  const std::optional<std::string>& geometry,
                                  const Equations& equations, const TrajectoryOptions& trajectory,
-                                 double gravity, double window,
+                                 bool position, double gravity, double window,
                                  const std::optional<std::array<double, 3>>& band,
                                  const CalibrationOptions& fit) {
   AircraftOptions options{.model = find_aircraft_model(model),
                           .geometry = {},
                           .equations = {},
                           .trajectory = trajectory,
+                          .position = position,
                           .gravity = gravity,
                           .window = window,
                           .band = {},
@@ -274,7 +275,7 @@ void define_fits(py::module_& module) {
 void define_aircraft(py::module_& module) {
   py::class_<AircraftOptions>(module, "Options")
       .def(py::init(&aircraft_options), py::kw_only(), "model"_a, "geometry"_a, "equations"_a,
-           "trajectory"_a, "gravity"_a, "window"_a, "band"_a, "fit"_a);
+           "trajectory"_a, "position"_a = false, "gravity"_a, "window"_a, "band"_a, "fit"_a);
   define_fits(module);
   module.def("fit", &fit_aircraft, WithoutGil());
   module.def("two_steps", &two_steps, WithoutGil());

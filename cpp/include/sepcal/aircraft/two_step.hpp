@@ -21,6 +21,7 @@ struct TwoStepOptions {
   /// are columns. `measured` as it stands; psi is added where there is neither yaw nor a velocity
   /// over the ground.
   TrajectoryOptions path = {};
+  bool position = false;     // of PathOptions
   double gravity = 9.80665;  // m/s^2, at the place of the flight
   double window = 0.0;       // of CoefficientOptions
   /// `start` of initial states goes before the first readings; FlightPath::held_at_zero is held

@@ -44,8 +44,11 @@ struct AircraftOptions {
   /// Empty: the model's own, S 6.8 to 6.13. Effects join them: "Cm[alpha^2]".
   std::vector<AeroEquation> equations = {};
   TrajectoryOptions trajectory = {};  // of path, where `outputs` are empty: those that are logged
-  double gravity = 9.80665;           // m/s^2, at the place of the flight
-  double window = 0.0;                // of CoefficientOptions, s
+  /// Of a path: x y z are states too, and north, east, down outputs, logged in metres or made of
+  /// lat, lon and altitude; then a velocity that comes from these is no output.
+  bool position = false;
+  double gravity = 9.80665;  // m/s^2, at the place of the flight
+  double window = 0.0;       // of CoefficientOptions, s
   /// Fitted over these frequencies instead of in time: aero by fit_in_band(), an aircraft by
   /// fit_output_error_in_band().
   std::optional<Band> band = {};

@@ -154,12 +154,12 @@ TwoStepFit fit_two_steps(const Flight& flight, const AircraftOptions& options) {
   AircraftOptions first = options;
   first.model = AircraftModel::path;
   first.calibration.effects.clear();
-  // As one with a state, which the path has.
-  ProbeRecord prepared = prepare(flight, AircraftModel::six_dof, second.calibration.log, false);
+  ProbeRecord prepared = prepare(flight, two_step_columns(options), second.calibration.log);
   TwoStep steps = within(flight, [&] {
     return two_step(prepared.record, geometry_of(second),
                     {.equations = equations_of(second),
                      .path = options.trajectory,
+                     .position = options.position,
                      .gravity = options.gravity,
                      .window = options.window,
                      .path_fit = options.calibration.fit,

@@ -15,6 +15,7 @@
 #include "base/name_list.hpp"
 #include "flight/aircraft/believed_rows.hpp"
 #include "flight/files/headers.hpp"
+#include "flight/logs/velocity_columns.hpp"
 #include "flight/probes/air_columns.hpp"
 #include "flight/probes/joined_quantities.hpp"
 #include "numerics/interpolated_column.hpp"
@@ -84,8 +85,9 @@ struct EmptyCells {
 std::vector<EmptyCells> bridge_outputs(Flight& flight, bool is_path,
                                        std::vector<std::string>& notes) {
   constexpr std::size_t fewest = 10;
-  static constexpr std::array outputs{"airspeed", "alpha", "beta", "roll", "pitch", "vn", "ve",
-                                      "vd",       "ax",    "ay",   "az",   "p",     "q",  "r"};
+  static constexpr std::array outputs{"airspeed", "alpha", "beta",  "roll", "pitch", "vn",
+                                      "ve",       "vd",    "north", "east", "down",  "ax",
+                                      "ay",       "az",    "p",     "q",    "r"};
   constexpr std::size_t inertial = 6;  // which a path is integrated from
   std::vector<EmptyCells> bridged;
   std::vector<std::string> told;
@@ -161,6 +163,12 @@ probes::ModelQuantities quantities_of(AircraftModel model) {
           .name = "ve", .kind = UnitKind::speed, .taken = probes::Taken::as_known},
       probes::ProbeQuantity{
           .name = "vd", .kind = UnitKind::speed, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{
+          .name = "north", .kind = UnitKind::length, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{
+          .name = "east", .kind = UnitKind::length, .taken = probes::Taken::as_known},
+      probes::ProbeQuantity{
+          .name = "down", .kind = UnitKind::length, .taken = probes::Taken::as_known},
       probes::ProbeQuantity{"elevator", UnitKind::angle},
       probes::ProbeQuantity{"aileron", UnitKind::angle},
       probes::ProbeQuantity{"rudder", UnitKind::angle},
@@ -197,12 +205,18 @@ bool is_symmetric(AircraftModel model, const std::vector<AeroEquation>& equation
   });
 }
 
-ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& log, bool symmetric,
+AskedColumns two_step_columns(const AircraftOptions& path) {
+  return {.model = AircraftModel::six_dof, .position = path.position};
+}
+
+ProbeRecord prepare(const Flight& logged, const AskedColumns& asked, const LogChoice& log,
                     std::vector<GappedOutput>* gaps) {
-  const ReadFlight read = probes::read_for(quantities_of(model), logged, log);
+  const AircraftModel model = asked.model;
+  ReadFlight read = probes::read_for(quantities_of(model), logged, log);
+  if (asked.position) logs::derive_position(read.flight, read.notes);
   const BelievedFlight believed = believe(read.flight, model, log);
   std::vector<std::string> notes;
-  Flight flight = symmetric ? within_symmetry(believed.flight, notes) : believed.flight;
+  Flight flight = asked.symmetric ? within_symmetry(believed.flight, notes) : believed.flight;
   const std::vector<EmptyCells> bridged =
       gaps == nullptr || log.drop_invalid
           ? std::vector<EmptyCells>()
@@ -225,7 +239,8 @@ ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& 
                           "thrust", "mass", "ps"}) {
     builder.offer({name});
   }
-  builder.offer({"vn", "ve", "vd"});
+  if (asked.position) builder.offer({"north", "east", "down"});
+  if (!asked.position || !read.velocity_is_of_positions) builder.offer({"vn", "ve", "vd"});
   builder.offer({"pdot", "qdot", "rdot"});
   probes::offer_temperature(builder);
   ProbeRecord prepared = builder.finish();
@@ -239,7 +254,7 @@ ProbeRecord prepare(const Flight& logged, AircraftModel model, const LogChoice& 
     gaps->push_back(std::move(output));
   }
   for (const std::vector<std::string>* told :
-       {&std::as_const(notes), &believed.notes, &read.notes}) {
+       {&std::as_const(notes), &believed.notes, &std::as_const(read.notes)}) {
     prepared.notes.insert(prepared.notes.begin(), told->begin(), told->end());
   }
   return prepared;

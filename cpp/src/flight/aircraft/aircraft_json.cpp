@@ -37,6 +37,7 @@ std::vector<AeroEquation> read_equations(const Json& object) {
 Json write_model(const AircraftOptions& options) {
   Json object = {{"equations", write_equations(options.equations)}};
   object.update(write_trajectory(options.trajectory));
+  if (options.position) object["position"] = true;
   object["gravity"] = options.gravity;
   object["window"] = options.window;
   if (options.band) {
@@ -58,6 +59,7 @@ void read_model(const Json& object, AircraftOptions& options) {
   along.measured = object.at("measured").get<std::vector<std::string>>();
   along.outputs = object.at("outputs").get<std::vector<std::string>>();
   along.scales_about_start = object.at("scales_about_start").get<bool>();
+  options.position = object.value("position", false);
   options.gravity = object.at("gravity").get<double>();
   options.window = object.at("window").get<double>();
   if (object.contains("band")) {

@@ -63,6 +63,9 @@ void add_path(const AircraftFit& fitted, const Fit& fit, const LaidAircraft& lai
   add_table(FlightPath::inputs, FlightPath::readings, "_cal");
   add_table(FlightPath::outputs, 6, "_cal");
   add_table(FlightPath::states, 3, "");
+  if (fitted.options.position) {
+    for (const char* name : {"x", "y", "z"}) add(flown, name, files::header_of(name, "m"));
+  }
   if (!fitted.options.geometry) return;
   const AeroCoefficients found =
       aero_coefficients(flown, *fitted.options.geometry, {.window = fitted.options.window});

@@ -38,7 +38,7 @@ void check_rates(const std::vector<Flight>& flights) {
 FlightCheck check_aircraft(AircraftModel model, const Flight& flight, const LogChoice& log,
                            const std::function<std::string(const std::string& name)>& spell) {
   const auto as_fitted = [&](const Flight& read, const LogChoice& choice) {
-    ProbeRecord prepared = prepare(read, model, choice, is_symmetric(model, {}));
+    ProbeRecord prepared = prepare(read, {model, is_symmetric(model, {})}, choice);
     within(read, [&] {
       if (model == AircraftModel::aero) {
         check_body_axes(prepared.record);

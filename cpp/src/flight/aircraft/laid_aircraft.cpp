@@ -57,6 +57,7 @@ void lay_along_path(const AircraftOptions& options, LaidAircraft& laid) {
                                    ? Eigen::Vector3d(options.geometry->vane - options.geometry->imu)
                                    : Eigen::Vector3d::Zero();
   PathTrajectory path = lay_path(laid.record, {.trajectory = options.trajectory,
+                                               .position = options.position,
                                                .gravity = options.gravity,
                                                .vane = vane,
                                                .free = options.calibration.free,
@@ -174,13 +175,15 @@ Fit fit_over_band(LaidAircraft& laid, const Band& band, const FitOptions& option
 /// By filter error with the gaps of outputs, of which another fit is told where they stop it.
 ProbeRecord prepare_for(const Flight& flight, const AircraftOptions& options, LaidAircraft& laid) {
   const LogChoice& log = options.calibration.log;
-  const bool symmetric = is_symmetric(options.model, laid.equations);
+  const AskedColumns asked{.model = options.model,
+                           .symmetric = is_symmetric(options.model, laid.equations),
+                           .position = options.position};
   const bool has_state = options.model != AircraftModel::aero && !options.band;
   if (has_state && options.calibration.fit.method == FitMethod::filter_error) {
-    return prepare(flight, options.model, log, symmetric, &laid.gaps);
+    return prepare(flight, asked, log, &laid.gaps);
   }
   try {
-    return prepare(flight, options.model, log, symmetric);
+    return prepare(flight, asked, log);
   } catch (const Error& error) {
     if (!has_state || !has_gaps(flight, options.model, log)) throw;
     throw_within("", error, "; filter error takes the readings that are there");

@@ -20,7 +20,7 @@ namespace sepcal::aircraft_log {
 
 struct LaidAircraft {
   std::shared_ptr<const BlockModel> model;
-  std::shared_ptr<const TrajectoryModel<FlightPath>> path;  // the same, where it is a path
+  std::shared_ptr<const StateBlockModel> path;  // the same, where it is a path
   Record record;
   FitOptions fit;
   std::vector<AeroEquation> equations;

@@ -16,17 +16,19 @@ using namespace aircraft_log;  // this room's own
 
 namespace {
 
+/// Throws OptionError where a track would begin with the fit of its own rows.
+void check_start(const AircraftFit& fitted, const Flight& flight, const FlightTrackOptions& how) {
+  if (how.start_rows > 0 || !is_same_flight(fitted, flight)) return;
+  throw OptionError(
+      {"the fit is of this flight, whose rows must not count twice; start from its first ones, by ",
+       Option{"start_rows"}});
+}
+
 StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const LaidAircraft& laid,
                      const FlightTrackOptions& how) {
+  check_start(fitted, flight, how);
   const std::size_t rows = how.start_rows;
-  if (rows == 0) {
-    if (is_same_flight(fitted, flight)) {
-      throw Error(
-          "the fit is of this flight, whose rows must not count twice; start from its first ones, "
-          "by --start-rows N (start_rows=N)");
-    }
-    return start_from_fit(fitted.fit);
-  }
+  if (rows == 0) return start_from_fit(fitted.fit);
   AircraftOptions options = fitted.options;
   if (how.how.method == TrackMethod::rml || !how.how.process_noise.empty()) {
     options.calibration.fit.method = FitMethod::filter_error;
@@ -43,10 +45,6 @@ StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const Laid
   }
   const LaidAircraft batch = lay_first_rows(flight, options, rows);
   return start_from_rows(*batch.model, readings_of(laid), rows, batch.fit);
-}
-
-bool is_filter(TrackMethod method) {
-  return method == TrackMethod::ekf || method == TrackMethod::iekf || method == TrackMethod::srif;
 }
 
 /// Of the path: all but what is of the coefficients.
@@ -111,9 +109,7 @@ TrackedFlight track_aircraft(const AircraftFit& fitted, const Flight& flight,
                           .file = flight.name(),
                           .notes = laid.notes};
     tracked.table = table_of(tracked.track, *laid.model);
-    tracks::set_flight_rows(tracked, laid.flight_rows);
-    tracks::note_colour(tracked);
-    tracks::note_drift(tracked);
+    tracks::place_in_flight(tracked, laid.flight_rows);
     return tracked;
   });
 }
@@ -126,17 +122,13 @@ TrackedFlight track_two_steps(const TwoStepFit& fitted, const Flight& flight,
   if (!is_filter(options.how.method)) {
     throw OptionError({Option{"method"}, " of two steps is the path's: ekf, iekf or srif"});
   }
-  const bool is_own = is_same_flight(fitted.path, flight);
-  if (options.start_rows == 0 && is_own) {
-    throw Error(
-        "the fit is of this flight, whose rows must not count twice; start from its first ones, "
-        "by --start-rows N (start_rows=N)");
-  }
+  check_start(fitted.path, flight, options);
   const AircraftOptions path = options_on(fitted.path, flight);
-  const ProbeRecord prepared = prepare(flight, AircraftModel::six_dof, path.calibration.log, false);
+  const ProbeRecord prepared = prepare(flight, two_step_columns(path), path.calibration.log);
   return within(flight, [&] {
     TwoStepOptions steps{.equations = fitted.aero.equations,
                          .path = path.trajectory,
+                         .position = path.position,
                          .gravity = path.gravity,
                          .window = fitted.aero.options.window,
                          .path_fit = path.calibration.fit,
@@ -158,9 +150,7 @@ TrackedFlight track_two_steps(const TwoStepFit& fitted, const Flight& flight,
                           .outputs = std::move(found.outputs),
                           .file = flight.name(),
                           .notes = prepared.notes};
-    tracks::set_flight_rows(tracked, prepared.flight_rows);
-    tracks::note_colour(tracked);
-    tracks::note_drift(tracked);
+    tracks::place_in_flight(tracked, prepared.flight_rows);
     return tracked;
   });
 }

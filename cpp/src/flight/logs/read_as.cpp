@@ -24,7 +24,7 @@ ReadFlight read_as(const Flight& flight, const LogChoice& choice) {
   logs::turn_heading(read.flight, read.notes);
   logs::turn_climb(read.flight, read.notes);
   logs::derive_from_track(read.flight, read.notes);
-  logs::derive_velocity(read.flight, read.notes);
+  read.velocity_is_of_positions = logs::derive_velocity(read.flight, read.notes);
   logs::derive_climb(read.flight, read.notes);
   logs::complete_pressures(read.flight, read.notes);
   return read;

@@ -23,7 +23,7 @@ namespace {
 
 using files::UnitKind;
 
-constexpr double no_velocity = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 
 /// WGS 84: metres a radian of latitude and of longitude.
 struct Radii {
@@ -101,7 +101,7 @@ double slope_between(double t, double t0, double t1, double p0, double p1, doubl
 std::vector<double> velocity_at(const std::vector<double>& time, const std::vector<double>& fixed,
                                 const std::vector<std::size_t>& parts, const SmoothedTrack& track,
                                 double reach) {
-  std::vector<double> velocity(time.size(), no_velocity);
+  std::vector<double> velocity(time.size(), not_there);
   for (std::size_t row = 0; row < time.size(); ++row) {
     if (!std::isfinite(time[row])) continue;
     const auto after = std::ranges::upper_bound(fixed, time[row]);
@@ -148,34 +148,47 @@ void check_latitude(const Flight& flight, const Positions& at) {
                           flight.locate(row), logged->column->header, logged->column->values[row]));
 }
 
-/// Says in the column of what rows lack why they lack it.
-void add_velocity(Flight& flight, const char* header, std::vector<double> values) {
-  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
-  std::optional<Flight::Cell> first;
-  const auto bad = std::ranges::find_if_not(*owned, [](double v) { return std::isfinite(v); });
-  if (bad != owned->end()) {
-    first =
-        Flight::Cell{static_cast<std::size_t>(bad - owned->begin()), "no velocity: no fix is near"};
-  }
-  flight.view(header, *owned, owned, std::move(first));
-}
-
-}  // namespace
-
-void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
-  const auto is_logged = [&](const char* name) {
-    return files::find_quantity(flight, name, UnitKind::speed).has_value();
-  };
-  if (flight.is_mapped() || is_logged("vn") || is_logged("ve")) return;
+/// Empty where a column isn't there. Throws Error as check_latitude().
+Positions read_positions(const Flight& flight) {
   Positions at{files::read_quantity(flight, "time", UnitKind::time),
                files::read_quantity(flight, "lat", UnitKind::angle),
                files::read_quantity(flight, "lon", UnitKind::angle),
                files::read_quantity(flight, "altitude", UnitKind::length)};
-  if (at.time.empty() || at.latitude.empty() || at.longitude.empty() || at.altitude.empty()) return;
+  if (at.time.empty() || at.latitude.empty() || at.longitude.empty() || at.altitude.empty()) {
+    return {};
+  }
   check_latitude(flight, at);
+  return at;
+}
+
+/// Says in the column of what rows lack why they lack it.
+void add_with_reason(Flight& flight, const char* header, std::vector<double> values,
+                     const char* reason) {
+  const auto owned = std::make_shared<const std::vector<double>>(std::move(values));
+  std::optional<Flight::Cell> first;
+  const auto bad = std::ranges::find_if_not(*owned, [](double v) { return std::isfinite(v); });
+  if (bad != owned->end()) {
+    first = Flight::Cell{static_cast<std::size_t>(bad - owned->begin()), reason};
+  }
+  flight.view(header, *owned, owned, std::move(first));
+}
+
+void add_velocity(Flight& flight, const char* header, std::vector<double> values) {
+  add_with_reason(flight, header, std::move(values), "no velocity: no fix is near");
+}
+
+}  // namespace
+
+bool derive_velocity(Flight& flight, std::vector<std::string>& notes) {
+  const auto is_logged = [&](const char* name) {
+    return files::find_quantity(flight, name, UnitKind::speed).has_value();
+  };
+  if (flight.is_mapped() || is_logged("vn") || is_logged("ve")) return false;
+  const Positions at = read_positions(flight);
+  if (at.time.empty()) return false;
   const std::vector<std::size_t> fixes = find_fixes(at);
   constexpr std::size_t fewest_fixes = 10;
-  if (fixes.size() < fewest_fixes) return;
+  if (fixes.size() < fewest_fixes) return false;
   const std::vector<double> time = offsets(at_fixes(at.time, fixes), 1.0);
   std::vector<double> longitude = at_fixes(at.longitude, fixes);
   numerics::unwrap(longitude);
@@ -208,6 +221,40 @@ void derive_velocity(Flight& flight, std::vector<std::string>& notes) {
       "{:.2g} and {:.2g} m/s",
       flight.name(), fixes.size(), north.position_error, east.position_error, down.position_error,
       north.velocity_error, east.velocity_error, down.velocity_error));
+  return true;
+}
+
+void derive_position(Flight& flight, std::vector<std::string>& notes) {
+  const auto is_logged = [&](const char* name) {
+    return files::find_quantity(flight, name, UnitKind::length).has_value();
+  };
+  if (flight.is_mapped() || is_logged("north") || is_logged("east")) return;
+  const Positions at = read_positions(flight);
+  if (at.time.empty()) return;
+  const std::vector<std::size_t> fixes = find_fixes(at);
+  if (fixes.empty()) return;
+  std::vector<double> longitude = at_fixes(at.longitude, fixes);
+  numerics::unwrap(longitude);
+  const std::size_t first = fixes.front();
+  std::vector<double> north(at.time.size(), not_there);
+  std::vector<double> east = north;
+  std::vector<double> down = north;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const std::size_t row = fixes[i];
+    // Between both: of second order in the distance.
+    const double height = 0.5 * (at.altitude[row] + at.altitude[first]);
+    const Radii radii = radii_at(0.5 * (at.latitude[row] + at.latitude[first]), height);
+    north[row] = radii.north * (at.latitude[row] - at.latitude[first]);
+    east[row] = radii.east * (longitude[i] - longitude.front());
+    down[row] = at.altitude[first] - at.altitude[row];
+  }
+  add_with_reason(flight, "north_m", std::move(north), "");
+  add_with_reason(flight, "east_m", std::move(east), "");
+  add_with_reason(flight, "down_m", std::move(down), "");
+  notes.push_back(fmt::format(
+      "{}: north, east and down are metres from the first fix ({:.6f}, {:.6f} deg), of {} fixes",
+      flight.name(), at.latitude[first] * 180.0 / std::numbers::pi,
+      at.longitude[first] * 180.0 / std::numbers::pi, fixes.size()));
 }
 
 bool smooth_climb(Flight& flight, std::vector<std::string>& notes) {

@@ -15,9 +15,11 @@
 namespace sepcal {
 
 struct PathOptions {
-  /// Outputs, where empty: those of airspeed beta alpha roll pitch yaw vn ve vd that are columns.
-  /// psi joins `measured` where there is neither yaw nor a velocity over the ground.
+  /// Outputs, where empty: those of airspeed beta alpha roll pitch yaw vn ve vd that are columns,
+  /// with `position` of north east down too. psi joins `measured` where there is neither yaw nor a
+  /// velocity or position over the ground.
   TrajectoryOptions trajectory = {};
+  bool position = false;                           // x y z are states
   double gravity = 9.80665;                        // m/s^2, at the place of the flight
   Eigen::Vector3d vane = Eigen::Vector3d::Zero();  // from the inertial unit, body axes, m
   /// FlightPath::held_at_zero is held unless named here or by fit.fix.
@@ -28,8 +30,8 @@ struct PathOptions {
 
 /// Ready for fit(), fit_many(), intervals.
 struct PathTrajectory {
-  std::shared_ptr<const TrajectoryModel<FlightPath>> model;
-  Record record;  // with a column for each measured state
+  std::shared_ptr<const StateBlockModel> model;  // FlightPath, or FlightPathWithPosition
+  Record record;                                 // with a column for each measured state
   FitOptions fit;
   std::vector<std::string> initial_states;  // names of parameters
 };

@@ -13,6 +13,7 @@ namespace sepcal {
 struct ReadFlight {
   Flight flight;                   // shares the columns' memory with the log
   std::vector<std::string> notes;  // what was done to it, one line each, for people
+  bool velocity_is_of_positions = false;
 };
 
 /// The log's columns as `choice` maps and ignores them; those that clearly are a quantity under
