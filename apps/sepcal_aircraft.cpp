@@ -23,6 +23,7 @@
 #include "sepcal/detail/simulation/truth.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/flight/aircraft.hpp"
+#include "sepcal/flight/expected_fit.hpp"
 #include "sepcal/flight/frequency.hpp"
 #include "sepcal/simulation/aircraft.hpp"
 #include "simulation_arguments.hpp"
@@ -345,6 +346,12 @@ class AircraftApp {
     response_arguments_.add_to(response_);
     add_output(response_, "RESPONSE.csv", true);
     design_arguments_.add_to(design_);
+    add_file(
+        design_, "--for", base_,
+        "what fit wrote of an aircraft: says which errors a flight of these inputs would leave")
+        ->type_name("FIT.json");
+    add_file(design_, "--flight", flight_, "with --for: where the aircraft begins, its first row")
+        ->type_name("FLIGHT.csv");
     add_output(design_, "INPUT.csv", true);
     add_output(simulate_, "FLIGHT.csv", true);
     add_file(simulate_, "--truth", truth_,
@@ -357,7 +364,8 @@ class AircraftApp {
                            &apply_, &track_, &response_, &design_, &simulate_, &effects_}) {
       verb->add_flag("-j,--json", wishes_.json, "prints the result as JSON on standard output");
     }
-    for (CLI::App* verb : {&fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_}) {
+    for (CLI::App* verb :
+         {&fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_, &design_}) {
       verb->add_flag("--explain", wishes_.explain, "prints all that the fit says of its status");
     }
   }
@@ -568,8 +576,25 @@ class AircraftApp {
   }
 
   int design() const {
+    if (base_.empty() != flight_.empty()) {
+      throw Error("--for FIT.json and --flight FLIGHT.csv go together; give both, or none");
+    }
+    const InputDesign made = design_arguments_.design();
+    if (base_.empty()) {
+      OutputFile output(wishes_.output);
+      deliver_table(made, output);
+      return 0;
+    }
+    for (const std::string& file : {base_, flight_}) check_not_input(wishes_.output, file);
     OutputFile output(wishes_.output);
-    deliver_table(design_arguments_.design(), output);
+    const AircraftFit base = read_aircraft_fit(base_);
+    const ExpectedFit expected =
+        expect_aircraft(base, read_flight(base.options.calibration.log), made);
+    write_csv(made, output);
+    output.commit();
+    give(wishes_.json, to_json(made, expected),
+         to_text(made) + page("wrote {}\n", wishes_.output).text() +
+             to_text(expected, detail_of(wishes_.explain)));
     return 0;
   }
 

@@ -211,6 +211,7 @@ class Fit:
         arg1: typing.SupportsInt | typing.SupportsIndex | None,
         arg2: sepcal._core.DiagnosisOptions,
     ) -> SteppedFit: ...
+    def expect(self, arg0: sepcal._core.Flight, arg1: sepcal._core.Flight) -> sepcal._core.Fit: ...
     def intervals(
         self,
         arg0: sepcal._core.Flight,

@@ -18,6 +18,7 @@ from sepcal.diagnosis import Diagnosis
 from sepcal.fit_options import FitOptions
 from sepcal.flight import AnyFlight, Flight, to_flight, to_flight_of
 from sepcal.geometry import Aircraft
+from sepcal.input_design import InputDesign
 from sepcal.intervals import Intervals
 from sepcal.options import spelled_out, to_core, to_names
 from sepcal.own_effect import given_effects, name_effects
@@ -312,6 +313,43 @@ class AircraftFit(Fit):
                 chosen._core, level, to_names("names", () if names is None else names)
             )
         )
+
+    def expect(
+        self,
+        inputs: InputDesign | AnyFlight,
+        flight: AnyFlight | Sequence[AnyFlight] | None = None,
+    ) -> Fit:
+        """The fit that a flight of these inputs would give, before it is flown.
+
+        The model flies them at this fit's values, and what it gives is fitted without noise: the
+        standard errors are the bound of Cramer and Rao, for white noise of this fit's size (of one
+        by filter error with its process noise), with this fit's options and what it holds.
+
+        Args:
+            inputs: What multisines() and three_two_one_one() make; or time_s and columns by the
+                log's headers, which add to what the first row has.
+            flight: Where the aircraft begins: its first row, and this fit's initial state there.
+
+        Raises:
+            Error: A path or equation error, which fly nothing; an input that the model doesn't
+                read of the flight; as fit().
+
+        Example:
+            >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
+            >>> mass = {"mass": 1100.0, "inertia": (1285.0, 1825.0, 2667.0, 0.0)}
+            >>> aircraft = sepcal.Aircraft(**size, **mass)
+            >>> flight = sepcal.simulate(aircraft, rows=400)
+            >>> fit = sepcal.fit(sepcal.RigidAircraft(aircraft, "longitudinal"), flight)
+            >>> short = fit.expect(sepcal.multisines({"elevator_rad": 0.02}, duration=10))
+            >>> twice = fit.expect(sepcal.multisines({"elevator_rad": 0.02}, duration=20))
+            >>> twice["Cm_elevator"].standard_error < short["Cm_elevator"].standard_error
+            True
+        """
+        chosen = self._or_fitted(flight, "expect(..., ")
+        if isinstance(inputs, InputDesign):
+            inputs = {"time_s": inputs.time, **inputs.signals}
+        table = to_flight(inputs, "expect(")
+        return Fit(self.core.expect(chosen._core, table._core))
 
     def add(
         self, effect: str, flight: AnyFlight | Sequence[AnyFlight] | None = None

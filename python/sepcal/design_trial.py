@@ -111,6 +111,32 @@ class DesignTrial:
         """The fit, and its truth."""
         return fit(self.model, {**self.design, **self.draw(rng)}, **self.options), self.truth
 
+    def expect(self) -> Fit:
+        """The fit of the measurements without noise, weighed by the noise that they would have.
+
+        Its estimates are the truth, its standard errors the bound of Cramer and Rao: what the
+        design would tell.
+
+        Example:
+            >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}
+            >>> truth = {"a": 0.3, "c": 1.0, "b": 0.2}
+            >>> one = sepcal.DesignTrial(wave, design, truth, 0.1).expect()
+            >>> two = sepcal.DesignTrial(wave, design, truth, 0.2).expect()
+            >>> round(two["b"].standard_error / one["b"].standard_error, 3)
+            2.0
+        """
+        held = self.options.get("fix") or {}
+        start = {name: self.truth[name] for name in self.model.nonlinear if name not in held}
+        options: FitOptions = {
+            **self.options,
+            "noise": self.scatter,
+            "start": start,
+            "coloured_errors": False,
+        }
+        if self.stirred:
+            options["process_noise"] = self.stirred
+        return fit(self.model, {**self.design, **self.exact}, **options)
+
     @property
     def goes_together(self) -> bool:
         """Whether trials are fitted side by side."""

@@ -18,6 +18,7 @@
 #include "sepcal/detail/flight/aircraft_file.hpp"
 #include "sepcal/detail/flight/output_file.hpp"
 #include "sepcal/detail/simulation/truth.hpp"
+#include "sepcal/flight/expected_fit.hpp"
 #include "sepcal/simulation/aircraft.hpp"
 #include "simulated.hpp"
 #include "structs.hpp"
@@ -101,6 +102,13 @@ AppliedColumns apply_to(const AircraftFit& fitted, const Flight& flight,
     columns[py::str(column.header)] = adopt(std::move(column.values));
   }
   return {columns, notes};
+}
+
+FittedModel expect_on(const AircraftFit& fitted, const Flight& flight, const Flight& inputs) {
+  const Released released;
+  ExpectedFit expected = expect_aircraft(fitted, flight, inputs);
+  Page page = page_of(expected);
+  return fitted_model(std::move(expected.fit), {}, std::move(page));
 }
 
 Tracking track_on(const AircraftFit& fitted, const Flight& flight,
@@ -246,6 +254,7 @@ void define_fits(py::module_& module) {
       .def("residuals", &residuals_on)
       .def("diagnose", &diagnose_on)
       .def("intervals", &intervals_on)
+      .def("expect", &expect_on)
       .def("diagnose_stepwise", &diagnose_stepwise_on)
       .def("add", &add_to_aircraft, WithoutGil())
       .def("apply", &apply_to)

@@ -190,40 +190,50 @@ ProbeRecord prepare_for(const Flight& flight, const AircraftOptions& options, La
   }
 }
 
-/// Of the whole flight, or of its first rows.
-LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
-                      std::optional<std::size_t> rows) {
-  LaidAircraft laid;
+/// What options say by themselves.
+LaidAircraft begin(const AircraftOptions& options) {
   if (options.model == AircraftModel::path && !options.equations.empty()) {
     throw Error("a flight path has no equations; leave them out, or fit a model of the aircraft");
   }
+  LaidAircraft laid;
   laid.effects = options.calibration.effects;
   laid.band = options.band;
   laid.equations = equations_of(options);
+  laid.fit = options.calibration.fit;
+  return laid;
+}
+
+/// The model along the record that `laid` has; `flight` is what messages call it.
+void lay_along_record(const std::string& flight, const AircraftOptions& options,
+                      LaidAircraft& laid) {
+  const auto smooth_inputs = [&] {
+    if (!options.calibration.log.smooth_inputs) return;
+    verbs::take_out_input_noise(laid.model->tables(), flight, laid.record, laid.notes);
+  };
+  if (options.model == AircraftModel::path) {
+    lay_along_path(options, laid);
+    smooth_inputs();
+    join_effects(options, laid);
+  } else if (options.model == AircraftModel::aero) {
+    lay_coefficients(options, laid);
+    smooth_inputs();
+  } else {
+    lay_motion(options, laid);
+    smooth_inputs();
+    join_effects(options, laid);
+    if (laid.band) hold_bent(options, laid);
+  }
+}
+
+/// Of the whole flight, or of its first rows.
+LaidAircraft lay_rows(const Flight& flight, const AircraftOptions& options,
+                      std::optional<std::size_t> rows) {
+  LaidAircraft laid = begin(options);
   ProbeRecord prepared = prepare_for(flight, options, laid);
   laid.record = rows ? first_rows(prepared.record, *rows) : std::move(prepared.record);
   laid.notes = std::move(prepared.notes);
   laid.flight_rows = std::move(prepared.flight_rows);
-  laid.fit = options.calibration.fit;
-  const auto smooth_inputs = [&] {
-    if (!options.calibration.log.smooth_inputs) return;
-    verbs::take_out_input_noise(laid.model->tables(), flight.name(), laid.record, laid.notes);
-  };
-  within(flight, [&] {
-    if (options.model == AircraftModel::path) {
-      lay_along_path(options, laid);
-      smooth_inputs();
-      join_effects(options, laid);
-    } else if (options.model == AircraftModel::aero) {
-      lay_coefficients(options, laid);
-      smooth_inputs();
-    } else {
-      lay_motion(options, laid);
-      smooth_inputs();
-      join_effects(options, laid);
-      if (laid.band) hold_bent(options, laid);
-    }
-  });
+  within(flight, [&] { lay_along_record(flight.name(), options, laid); });
   std::erase_if(laid.gaps, [&](const GappedOutput& one) {
     const std::vector<Variable>& outputs = laid.model->tables().outputs;
     return std::ranges::find(outputs, one.name, &Variable::name) == outputs.end();
@@ -333,6 +343,13 @@ LaidAircraft lay(const Flight& flight, const AircraftOptions& options) {
 LaidAircraft lay_first_rows(const Flight& flight, const AircraftOptions& options,
                             std::size_t rows) {
   return lay_rows(flight, options, rows);
+}
+
+LaidAircraft lay_record(Record record, const AircraftOptions& options) {
+  LaidAircraft laid = begin(options);
+  laid.record = std::move(record);
+  lay_along_record("the record", options, laid);
+  return laid;
 }
 
 const StateBlockModel& state_model_of(const LaidAircraft& laid, const AircraftFit& fitted) {

@@ -52,6 +52,9 @@ LaidAircraft lay(const Flight& flight, const AircraftOptions& options);
 /// The same for the first so many rows of its segments.
 LaidAircraft lay_first_rows(const Flight& flight, const AircraftOptions& options, std::size_t rows);
 
+/// The same of a record that no log has, with the columns of one that was laid.
+LaidAircraft lay_record(Record record, const AircraftOptions& options);
+
 /// Throws Error for a fit over a band, for a verb that looks at rows in time: "is profiled".
 void need_rows_in_time(const AircraftFit& fitted, std::string_view what_it_needs);
 

@@ -113,8 +113,9 @@ Page noise_table(const Fit& fit, const FitOptions& options) {
   return text + page("raises 2 ln L by {:.3g}\n", rise);
 }
 
-/// Pairs of estimates that go together; explained, the directions that are hardly determined too.
-Page collinearity_lines(const Fit& fit, Detail detail) {
+}  // namespace
+
+Page text::collinearity_lines(const Fit& fit, Detail detail) {
   const Collinearity found = find_collinearity(fit);
   constexpr std::size_t most = 5;
   const std::size_t shown =
@@ -138,8 +139,6 @@ Page collinearity_lines(const Fit& fit, Detail detail) {
   }
   return text;
 }
-
-}  // namespace
 
 Page text::fit_table(const Fit& fit, const CalibrationOptions& options,
                      const std::vector<Derived>& derived, Detail detail) {

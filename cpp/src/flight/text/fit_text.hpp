@@ -12,4 +12,7 @@ namespace sepcal::text {
 base::Page fit_table(const Fit& fit, const CalibrationOptions& options,
                      const std::vector<Derived>& derived, Detail detail);
 
+/// Pairs of estimates that go together; explained, the directions that are hardly determined too.
+base::Page collinearity_lines(const Fit& fit, Detail detail);
+
 }  // namespace sepcal::text
