@@ -10,6 +10,7 @@ import csv
 import datetime
 import importlib
 import os
+import re
 import tempfile
 import warnings
 import zipfile
@@ -31,6 +32,7 @@ MOST_CELLS = 50_000_000
 FEWEST_NUMBERS = 2  # of a row of numbers, times among them
 NUMBERS = {bool, int, float, datetime.datetime, datetime.time}
 AS_WRITTEN = {str, int, float, type(None)}  # by csv as by _text()
+TYPED_NUMBER = re.compile(r"\s*[-+]?\d[\d.,' ]*(?:[eE][-+]?\d+)?\s*")
 COUNTS, FLOATS = {int, float}, {float}
 ROWS_OF_A_LOG = 10
 LARGEST_COUNT = 1e15  # that a float holds without doubt
@@ -38,11 +40,20 @@ LARGEST_COUNT = 1e15  # that a float holds without doubt
 
 @dataclass
 class Sheet:
-    """A sheet as text: its name, file, rows of two numbers or more, and longest row of words."""
+    """A sheet as text.
+
+    Attributes:
+        name: As the workbook has it.
+        text: The file.
+        rows: Those of two numbers or more.
+        typed: Those of two numbers or more that were typed as text.
+        words: The longest row of words.
+    """
 
     name: str
     text: str
     rows: int = 0
+    typed: int = 0
     words: list[str] = field(default_factory=list)
 
 
@@ -172,12 +183,18 @@ def _write(file: str, rows: Iterable[Sequence[Any]], sheet: Sheet, budget: Budge
             written = [cell if type(cell) in AS_WRITTEN else _text(cell) for cell in row[:end]]
             if sum(type(cell) in NUMBERS for cell in row[:end]) >= FEWEST_NUMBERS:
                 sheet.rows += 1
+            elif sum(map(_is_typed_number, row[:end])) >= FEWEST_NUMBERS:
+                sheet.typed += 1
             elif sheet.rows == 0 and end >= len(sheet.words):
                 sheet.words = list(map(_text, written))
             width = max(width, end) if sheet.rows else width
             if sheet.rows:
                 written += [""] * (max(width, len(sheet.words)) - end)
             budget.take(writer.writerow(written), f"sheet '{sheet.name}'")
+
+
+def _is_typed_number(cell: object) -> bool:
+    return isinstance(cell, str) and TYPED_NUMBER.fullmatch(cell) is not None
 
 
 def _text(cell: object) -> str:
@@ -198,6 +215,7 @@ def _choose(file: str, sheets: list[Sheet], chosen: str | None) -> Sheet:
     if chosen is not None:
         return sheets[0]
     able = [s for s in sheets if s.rows >= ROWS_OF_A_LOG] or [s for s in sheets if s.rows]
+    able = able or [s for s in sheets if s.typed >= ROWS_OF_A_LOG]
     if not able:
         raise _core.Error(f"{file}: no sheet holds a table of numbers")
     if len(able) > 1:
