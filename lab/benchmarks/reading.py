@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Logs in other forms beside the same log as plain CSV: reading alone, one thread."""
+"""Logs in other forms beside the same log as plain CSV: reading alone, one core."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ import numpy as np
 
 import sepcal
 from benchmarks.race import Competitor, Result, judge, lengths_within, race
+from benchmarks.reading_libraries import race_libraries
 
 ROWS = (300_000,)
+ROWS_OF_LIBRARIES = (100_000,)  # half a minute of a workbook's writer
 HEADERS = (
     "time_s",
     "vn_mps",
@@ -32,10 +34,15 @@ def clock(seconds: float) -> str:
     return f"{int(minutes) // 60:02d}:{int(minutes) % 60:02d}:{second:06.3f}"
 
 
+def draw_numbers(rows: int) -> np.ndarray:
+    """All but the time, (N, 7)."""
+    rng = np.random.default_rng(1)
+    return np.round(rng.normal(20.0, 5.0, (rows, len(HEADERS) - 1)), 4)
+
+
 def write_forms(folder: Path, rows: int) -> dict[str, Path]:
     """The log, form by form."""
-    rng = np.random.default_rng(1)
-    numbers = np.round(rng.normal(20.0, 5.0, (rows, len(HEADERS) - 1)), 4)
+    numbers = draw_numbers(rows)
     cells = [[f"{0.01 * i:.2f}", *(f"{x:.4f}" for x in row)] for i, row in enumerate(numbers)]
 
     def lines(delimiter: str = ",", first: Callable[[int], str] | None = None) -> list[str]:
@@ -88,6 +95,10 @@ def race_length(folder: Path, rounds: int, rows: int) -> Result:
 
 
 def run(folder: Path, rounds: int, longest: int) -> Iterator[Result]:
-    """A table for each length."""
+    """Text tables, then forms that have a library."""
     for rows in lengths_within(longest, ROWS):
         yield race_length(folder, rounds, rows)
+    for rows in lengths_within(longest, ROWS_OF_LIBRARIES):
+        values = [np.round(0.01 * np.arange(rows), 2), *draw_numbers(rows).T.copy()]
+        plain = write_forms(folder, rows)["plain CSV"]
+        yield race_libraries(folder, plain, dict(zip(HEADERS, values, strict=True)), rounds)

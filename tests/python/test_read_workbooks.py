@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sepcal
-from sepcal.reading import excel
+from sepcal.reading import excel, workbook_parts
 from sepcal.reading.limits import Budget
 from sepcal.reading.workbook_parts import copy_if_safe
 
@@ -312,3 +312,41 @@ def test_an_archive_that_hides_what_is_in_it(tmp_path):
     file.write_bytes(packed.replace(real, (size // 2).to_bytes(4, "little")))
     copy = copy_if_safe(str(file), str(tmp_path))
     assert copy is None
+
+
+TAG = re.compile(rb'<c r="([A-Z]{1,3})([0-9]{1,7})"(?: [a-z]+="[^"<>&]*")*\s?/?>')
+ANY_TAG = re.compile(rb"<(?:[^\s<>/]*:)?c(?=[\s/>])")
+PARTS = [
+    b"<c r=",
+    b'"',
+    b"A",
+    b"AZB",
+    b"ABCD",
+    b"12",
+    b"1234567",
+    b"12345678",
+    b' t="n"',
+    b' s="1"',
+]
+PARTS += [b"/>", b">", b" ", b"<c>", b"<v>1</v>", b"</c>", b"<cols>", b"<x:c ", b"<", b"&", b"q"]
+
+
+def test_cells_are_found_as_an_expression_finds_them():
+    draw = random.Random(2)
+    accepted = 0
+    for _ in range(4000):
+        rests = draw.choices([b"", b' s="1"', b"/"], k=draw.randint(0, 5))
+        names = ((draw.randint(65, 90), draw.randint(1, 9999), rest) for rest in rests)
+        tags = b"".join(b'<c r="%c%d"%s>' % name for name in names)
+        other = b"".join(draw.choices(PARTS, k=draw.randint(0, 4)))
+        piece = tags + other if draw.random() < 0.5 else other + tags
+        expected = TAG.findall(piece)
+        found = workbook_parts._cells_in(piece)
+        if len(expected) != len(ANY_TAG.findall(piece)):
+            assert found is None, piece
+            continue
+        accepted += 1
+        assert found is not None, piece
+        columns = [openpyxl.utils.column_index_from_string(c.decode()) for c, _ in expected]
+        assert (found[0].tolist(), found[1].tolist()) == (columns, [int(r) for _, r in expected])
+    assert accepted > 1000

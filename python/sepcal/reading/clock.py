@@ -21,6 +21,8 @@ PARTS = ("time", "stamp", "clock")  # of a header
 IN_NAME = {"timeus": "us", "timems": "ms", "seconds": "s"}
 EPOCHS = ((8e8, 5e9, "s"), (8e11, 5e12, "ms"), (8e14, 5e15, "us"), (8e17, 5e18, "ns"))
 DAY = 86_400
+DATENUMS = (7.2e5, 7.8e5)  # MATLAB's, days since the year 0: of 1971 to 2135
+DATENUM_OF_1970 = 719_529
 STEPS = (2e-4, 60.0)  # [s]: between them the rows of a log follow each other
 
 
@@ -89,11 +91,20 @@ def _take_clock(columns: dict[str, Array], header: str, notes: list[str]) -> str
                 f"time_s is seconds since {day} 00:00 UTC: '{header}' counts {epoch} since 1970"
             )
             return str(day)
+    step = float(np.median(np.diff(known)))
+    is_of_days = not unit and DATENUMS[0] <= known[0] <= DATENUMS[1]
+    if is_of_days and STEPS[0] <= step * DAY <= STEPS[1]:
+        first = np.floor(known[0])
+        day = np.datetime64(int(first) - DATENUM_OF_1970, "D")
+        _put_first(columns, header, np.round((values - first) * DAY, 5))  # what a double holds
+        notes.append(
+            f"time_s is seconds since {day} 00:00: '{header}' counts days as MATLAB does (datenum)"
+        )
+        return str(day)
     if unit:
         _put_first(columns, header, values * SECONDS[unit])
         notes.append(f"time_s is column '{header}' in seconds")
         return ""
-    step = float(np.median(np.diff(known)))
     if STEPS[0] <= step <= STEPS[1] and (known != np.round(known)).any():
         _put_first(columns, header, values)
         notes.append(f"time_s is column '{header}', which has no unit: taken for seconds")

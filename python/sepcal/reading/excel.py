@@ -10,6 +10,7 @@ import csv
 import datetime
 import importlib
 import os
+import re
 import tempfile
 import warnings
 import zipfile
@@ -31,17 +32,28 @@ MOST_CELLS = 50_000_000
 FEWEST_NUMBERS = 2  # of a row of numbers, times among them
 NUMBERS = {bool, int, float, datetime.datetime, datetime.time}
 AS_WRITTEN = {str, int, float, type(None)}  # by csv as by _text()
+TYPED_NUMBER = re.compile(r"\s*[-+]?\d[\d.,' ]*(?:[eE][-+]?\d+)?\s*")
+COUNTS, FLOATS = {int, float}, {float}
 ROWS_OF_A_LOG = 10
 LARGEST_COUNT = 1e15  # that a float holds without doubt
 
 
 @dataclass
 class Sheet:
-    """A sheet as text: its name, file, rows of two numbers or more, and longest row of words."""
+    """A sheet as text.
+
+    Attributes:
+        name: As the workbook has it.
+        text: The file.
+        rows: Those of two numbers or more.
+        typed: Those of two numbers or more that were typed as text.
+        words: The longest row of words.
+    """
 
     name: str
     text: str
     rows: int = 0
+    typed: int = 0
     words: list[str] = field(default_factory=list)
 
 
@@ -103,15 +115,15 @@ def _rows_of(book: Any, name: str) -> Iterator[Sequence[Any]]:  # noqa: ANN401
     sheet = book.get_sheet_by_name(name)
     before = [None] * (sheet.start[1] if sheet.start else 0)
     for row in sheet.iter_rows():
-        yield before + [
-            cell if type(cell) is float and not cell.is_integer() else _as_openpyxl(cell)
-            for cell in row
-        ]
+        if FLOATS.issuperset(map(type, row)):  # nearly always, and without a call a cell
+            yield before + [cell if not cell.is_integer() else _as_openpyxl(cell) for cell in row]
+        else:
+            yield before + list(map(_as_openpyxl, row))
 
 
 def _as_openpyxl(cell: object) -> object:
     if isinstance(cell, float):
-        return int(cell) if cell.is_integer() and abs(cell) < LARGEST_COUNT else cell
+        return int(cell) if abs(cell) < LARGEST_COUNT and cell.is_integer() else cell
     if isinstance(cell, datetime.date) and not isinstance(cell, datetime.datetime):
         return datetime.datetime.combine(cell, datetime.time())
     return None if cell == "" else cell
@@ -148,26 +160,41 @@ def _write(file: str, rows: Iterable[Sequence[Any]], sheet: Sheet, budget: Budge
     with open_scratch_text(sheet.text) as opened:
         writer = csv.writer(opened, lineterminator="\n")
         for row in rows:
-            end = len(row)
-            while end and row[end - 1] is None:
-                end -= 1
             cells += max(len(row), 1)
             if cells > MOST_CELLS:
                 raise _core.Error(
                     f"{file}: sheet '{sheet.name}' has more than {MOST_CELLS:,} cells; "
                     "write it as CSV"
                 )
+            if (
+                width
+                and len(row) == width >= len(sheet.words)
+                and COUNTS.issuperset(map(type, row))
+            ):
+                sheet.rows += 1  # as below, in one go
+                text = ",".join(map(repr, row))
+                budget.take(opened.write(text + "\n"), f"sheet '{sheet.name}'")
+                continue
+            end = len(row)
+            while end and row[end - 1] is None:
+                end -= 1
             if not end:
                 continue
             written = [cell if type(cell) in AS_WRITTEN else _text(cell) for cell in row[:end]]
             if sum(type(cell) in NUMBERS for cell in row[:end]) >= FEWEST_NUMBERS:
                 sheet.rows += 1
+            elif sum(map(_is_typed_number, row[:end])) >= FEWEST_NUMBERS:
+                sheet.typed += 1
             elif sheet.rows == 0 and end >= len(sheet.words):
                 sheet.words = list(map(_text, written))
             width = max(width, end) if sheet.rows else width
             if sheet.rows:
                 written += [""] * (max(width, len(sheet.words)) - end)
             budget.take(writer.writerow(written), f"sheet '{sheet.name}'")
+
+
+def _is_typed_number(cell: object) -> bool:
+    return isinstance(cell, str) and TYPED_NUMBER.fullmatch(cell) is not None
 
 
 def _text(cell: object) -> str:
@@ -188,6 +215,7 @@ def _choose(file: str, sheets: list[Sheet], chosen: str | None) -> Sheet:
     if chosen is not None:
         return sheets[0]
     able = [s for s in sheets if s.rows >= ROWS_OF_A_LOG] or [s for s in sheets if s.rows]
+    able = able or [s for s in sheets if s.typed >= ROWS_OF_A_LOG]
     if not able:
         raise _core.Error(f"{file}: no sheet holds a table of numbers")
     if len(able) > 1:

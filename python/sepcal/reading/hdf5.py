@@ -6,6 +6,7 @@ What a file links to outside of itself is not read.
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,13 @@ MAGIC = b"\x89HDF\r\n\x1a\n"
 DEEPEST = 16
 MOST_NODES = 20_000
 INDEX_OF_PYTABLES = "_i_"
+STEPS = {"nanosecond": 1, "microsecond": 1_000, "millisecond": 1_000_000, "second": 1_000_000_000}
+STEPS |= {"minute": 60 * STEPS["second"], "hour": 3600 * STEPS["second"]}
+STEPS |= {"day": 86_400 * STEPS["second"]}
+START = re.compile(  # year, month, day, hour, minute, second, the zone's sign, hours, minutes
+    r"(\d{4})-(\d{1,2})-(\d{1,2})(?:[T ]\s*(\d{1,2}):(\d{1,2})(?::(\d{1,2}(?:\.\d*)?))?)?"
+    r"\s*(?:Z|UTC|GMT|([+-])(\d{1,2}):?(\d{2})?)?"
+)
 UNITS = ("units", "unit", "Units", "Unit", "UNITS")
 
 
@@ -144,16 +152,26 @@ def _in_dates(dataset: Any, values: np.ndarray) -> np.ndarray:  # noqa: ANN401
     unit = _unit_of(dataset)
     text = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
     step, since, start = text.partition(" since ")
-    steps = {"seconds": 1e9, "milliseconds": 1e6, "microseconds": 1e3, "nanoseconds": 1.0}
-    if not since or step not in steps or values.dtype.kind not in "fiu" or values.ndim != 1:
+    size = STEPS.get(step.strip().lower().rstrip("s"))
+    zero = _start_of(start) if since and size else None
+    if size is None or zero is None or values.dtype.kind not in "fiu" or values.ndim != 1:
         return values
-    try:
-        zero = np.datetime64(
-            start.strip().removesuffix("Z").removesuffix(" UTC")[:26].strip(), "ns"
-        )
-    except ValueError:
-        return values
-    spans = (
-        np.round(values * steps[step]) if values.dtype.kind == "f" else values * int(steps[step])
-    )
+    is_float = values.dtype.kind == "f"
+    spans = np.round(values * float(size)) if is_float else values.astype(np.int64) * size
     return np.asarray(zero + spans.astype("timedelta64[ns]"))
+
+
+def _start_of(text: str) -> np.datetime64 | None:
+    """The date from which netCDF counts, in UTC: "1970-1-1 0:00:00 +01:00"; None of no such."""
+    found = START.fullmatch(text.strip())
+    if found is None:
+        return None
+    year, month, day, hour, minute, second, sign, hours, minutes = found.groups()
+    try:
+        zero = np.datetime64(f"{int(year):04d}-{int(month):02d}-{int(day):02d}", "ns")
+    except ValueError:
+        return None
+    zone = int(f"{sign}1") * (60 * int(hours) + int(minutes or 0)) if sign else 0
+    seconds = 3600 * int(hour or 0) + 60 * (int(minute or 0) - zone)
+    parts = round(float(second or 0) * 1e9)
+    return zero + np.timedelta64(seconds * 1_000_000_000 + parts, "ns")

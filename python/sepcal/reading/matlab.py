@@ -18,7 +18,7 @@ from sepcal.reading.extras import load
 from sepcal.reading.matlab_5 import read_variables
 from sepcal.reading.rates import join_tables
 from sepcal.reading.table import Table
-from sepcal.reading.trees import Tree, tables_in
+from sepcal.reading.trees import UNITS_OF, Tree, tables_in
 
 MAGIC = b"MATLAB 5.0 MAT-file"
 MAGIC_73 = b"MATLAB 7.3 MAT-file"
@@ -64,11 +64,13 @@ def read(file: str, chosen: str | None) -> Table:
 
 
 def _plain(value: dict[str, Any]) -> Tree:
-    """Structs and columns; single texts and numbers are none."""
+    """Structs and columns; single texts and numbers are none, but for units."""
     found: dict[str, np.ndarray | Tree] = {}
     for name, part in value.items():
         if isinstance(part, dict):
             found[name] = _plain(part)
+        elif isinstance(part, str) and name.lower() in UNITS_OF:
+            found[name] = np.array(part)
         elif isinstance(part, np.ndarray) and part.ndim in (1, 2):
             found[name] = part
     return found
@@ -111,7 +113,8 @@ def _of_dataset(reader: hdf5.Reader, root: Any, dataset: Any) -> np.ndarray | No
         texts = [_text(reader, root[one]) for one in dataset[()].T.ravel() if one]
         return np.array(texts, dtype=object) if all(t is not None for t in texts) else None
     if dataset.attrs.get("MATLAB_class") == b"char":
-        return None
+        is_unit = dataset.name.rpartition("/")[2].lower() in UNITS_OF
+        return np.array(_text(reader, dataset)) if is_unit else None
     values = reader.values_of(dataset)
     return None if values is None else np.squeeze(values.T)
 

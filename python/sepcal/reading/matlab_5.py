@@ -43,7 +43,10 @@ class Damaged(Exception):
 
 
 def read_variables(file: str) -> tuple[dict[str, Any], bool]:
-    """Arrays, texts and structs (dicts; of an array of structs a column a field) by name.
+    """Arrays, texts and structs by name.
+
+    A struct is a dict, an array of structs one with a column a field, or of structs where they
+    hold arrays.
 
     Returns:
         The variables, and whether there are objects, which are left out.
@@ -189,11 +192,27 @@ class _Reader:
         if count == 1:
             return {field: values[0] for field, values in columns.items() if values}
         rows = {field: [_of_one(value) for value in values] for field, values in columns.items()}
+        if any(
+            isinstance(v, np.ndarray) and v.size > 1 for values in rows.values() for v in values
+        ):
+            return _by_name(columns)
         return {
             field: _of_objects(values)
             for field, values in rows.items()
             if all(np.ndim(value) == 0 for value in values)
         }
+
+
+def _by_name(columns: dict[str, list[Any]]) -> dict[str, Any]:
+    """Structs of arrays by the texts in a field that names them (Simulink's label), or numbered."""
+    count = max(map(len, columns.values()))
+    whole = {field: values for field, values in columns.items() if len(values) == count}
+    named = [whole[f] for f in ("label", "name", "Name") if f in whole]
+    names = next((n for n in named if all(n) and len(set(map(str, n))) == count), None)
+    return {
+        str(names[row]) if names else str(row + 1): {f: values[row] for f, values in whole.items()}
+        for row in range(count)
+    }
 
 
 def _of_objects(values: list[Any]) -> np.ndarray:

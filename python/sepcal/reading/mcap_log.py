@@ -8,9 +8,12 @@ a unit and axes: x forward, y left, z up of the body, east, north, up of the wor
 from __future__ import annotations
 
 import json
+import os
+import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from io import BytesIO
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,36 +33,65 @@ DEEPEST = 8
 LONGEST = 32  # list that becomes columns
 QUATERNION = ("qw", "qx", "qy", "qz")
 STAMP = ("header.stamp.sec", "header.stamp.nanosec")
+ROWS = 4096  # of a block
+RECORD, MESSAGE = struct.Struct("<BQ"), struct.Struct("<HIQQ")  # heads, by MCAP's specification
+BOM = "\ufeff"
+
+
+class Message(NamedTuple):
+    """What is used of a message. `log_time`: [ns]."""
+
+    channel_id: int
+    log_time: int
+    data: bytes
 
 
 @dataclass
 class Topic:
-    """Messages of one topic as they come: times [ns] and numbers by field."""
+    """Messages of one topic as they come: times [ns], and numbers in blocks of equal fields."""
 
     name: str
     kind: str
     times: list[int] = field(default_factory=list)
-    columns: dict[str, list[float]] = field(default_factory=dict)
+    fields: dict[str, None] = field(default_factory=dict)
     frame: str = ""
+    _blocks: list[tuple[tuple[str, ...], Array]] = field(default_factory=list)
+    _names: tuple[str, ...] = ()  # of the rows that are in no block yet
+    _rows: list[tuple[float, ...]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.what = f"topic {self.name}"  # in messages
 
     def add(self, time: int, values: Mapping[str, float], budget: Budget) -> None:
-        """A message; NaN for fields that it lacks."""
-        budget.take(8 * len(self.columns), self.what)
-        if values.keys() == self.columns.keys():  # nearly always
-            for name, value in values.items():
-                self.columns[name].append(value)
-            self.times.append(time)
-            return
-        for name in values:
-            if name not in self.columns and len(self.columns) < MOST_FIELDS:
-                budget.take(8 * (len(self.times) + 1), self.what)
-                self.columns[name] = [np.nan] * len(self.times)
+        """A message."""
+        names = tuple(values)
+        if names != self._names or len(self._rows) == ROWS:
+            self._close()
+            self._names = names
+            for name in names:
+                if name not in self.fields and len(self.fields) < MOST_FIELDS:
+                    budget.take(8 * len(self.times), self.what)
+                    self.fields[name] = None
+        budget.take(8 * len(self.fields), self.what)
         self.times.append(time)
-        for name, column in self.columns.items():
-            column.append(values.get(name, np.nan))
+        self._rows.append(tuple(values.values()))
+
+    def columns(self) -> dict[str, Array]:
+        """By field (N,): NaN where a message lacks it."""
+        self._close()
+        found = {name: np.full(len(self.times), np.nan) for name in self.fields}
+        first = 0
+        for names, block in self._blocks:
+            for name, values in zip(names, block.T, strict=True):
+                if name in found:
+                    found[name][first : first + len(values)] = values
+            first += len(block)
+        return found
+
+    def _close(self) -> None:
+        if self._rows:
+            self._blocks.append((self._names, np.array(self._rows, dtype=np.float64)))
+            self._rows = []
 
 
 def read(file: str, chosen: str | None) -> Table:
@@ -109,7 +141,7 @@ def _read_topics(file: str) -> tuple[list[Topic], list[str], str]:
             if isinstance(record, records.Channel):
                 channels[record.id] = record
                 continue
-            if not isinstance(record, records.Message) or record.channel_id not in channels:
+            if not isinstance(record, Message) or record.channel_id not in channels:
                 continue
             channel_id = record.channel_id
             try:
@@ -141,22 +173,64 @@ def _read_topics(file: str) -> tuple[list[Topic], list[str], str]:
 
 
 def _records(file: str, opened: Any, budget: Budget) -> Iterator[Any]:  # noqa: ANN401
-    """Every record in the file's order, those of chunks unpacked one chunk at a time."""
+    """Messages, channels and schemas in the file's order, chunks unpacked one at a time.
+
+    Raises ValueError, or what mcap raises, where the file breaks off.
+    """
+    records = load("mcap.records", file, "MCAP")
     stream = load("mcap.stream_reader", file, "MCAP")
-    chunk = load("mcap.records", file, "MCAP").Chunk
-    for record in stream.StreamReader(opened, emit_chunks=True).records:
-        if isinstance(record, chunk):
-            budget.take(record.uncompressed_size, "a chunk")
-            yield from stream.breakup_chunk(record)
+    data_stream = load("mcap.data_stream", file, "MCAP")
+    opcode = load("mcap.opcode", file, "MCAP").Opcode
+    message, channel, schema = map(int, (opcode.MESSAGE, opcode.CHANNEL, opcode.SCHEMA))
+    readers = {channel: records.Channel.read, schema: records.Schema.read}
+
+    def record_of(kind: int, body: bytes) -> Any:  # noqa: ANN401
+        if kind in readers:
+            return readers[kind](data_stream.ReadDataStream(BytesIO(body)))
+        channel_id, _, log_time, _ = MESSAGE.unpack_from(body)
+        return Message(channel_id, log_time, body[MESSAGE.size :])
+
+    for kind, body in _bodies(opened, {message, *readers, int(opcode.CHUNK)}, int(opcode.FOOTER)):
+        if kind != opcode.CHUNK:
+            yield record_of(kind, body)
+            continue
+        chunk = records.Chunk.read(data_stream.ReadDataStream(BytesIO(body)))
+        budget.take(chunk.uncompressed_size, "a chunk")
+        unpacked, size = stream.get_chunk_data_stream(chunk)
+        whole, at = unpacked.read(size), 0
+        while at < size:
+            kind, length = RECORD.unpack_from(whole, at)
+            start, at = at + RECORD.size, at + RECORD.size + length
+            if at > len(whole):
+                raise ValueError("a chunk breaks off")
+            if kind == message and length >= MESSAGE.size:
+                channel_id, _, log_time, _ = MESSAGE.unpack_from(whole, start)
+                yield Message(channel_id, log_time, whole[start + MESSAGE.size : at])
+            elif kind in readers:
+                yield record_of(kind, whole[start:at])
+
+
+def _bodies(opened: Any, kinds: set[int], last: int) -> Iterator[tuple[int, bytes]]:  # noqa: ANN401
+    """The records of these kinds outside of chunks, to the last one."""
+    left = os.fstat(opened.fileno()).st_size - len(opened.read(len(MAGIC)))
+    while True:
+        kind, size = RECORD.unpack(opened.read(RECORD.size))
+        left -= RECORD.size + size
+        if left < 0:
+            raise ValueError("it is cut off")
+        if kind == last:
+            return
+        if kind in kinds:
+            yield kind, opened.read(size)
         else:
-            yield record
+            opened.seek(size, os.SEEK_CUR)
 
 
 def _decoder(file: str, channel: Any, schema: Any) -> Any:  # noqa: ANN401
     """Bytes to numbers by field and the frame's name."""
     if channel.message_encoding == "json":
         decode_json = json.JSONDecoder().decode
-        return lambda data: _flatten(decode_json(str(data, "utf-8-sig")))
+        return lambda data: _flatten(decode_json(str(data, "utf-8").removeprefix(BOM)))
     if channel.message_encoding == "cdr" and schema is not None and schema.encoding == "ros2msg":
         ros2 = load("mcap_ros2.decoder", file, "MCAP of ROS 2")
         decode = ros2.DecoderFactory().decoder_for("cdr", schema)
@@ -168,7 +242,10 @@ def _refuse(_: bytes) -> tuple[dict[str, float], str]:
     raise ValueError("unknown encoding")
 
 
-def _flatten(message: Any) -> tuple[dict[str, float], str]:  # noqa: ANN401
+def _flatten(message: Any) -> tuple[Mapping[str, float], str]:  # noqa: ANN401
+    is_flat = type(message) is dict and len(message) <= MOST_FIELDS
+    if is_flat and set(map(type, message.values())) == {float}:
+        return message, ""
     found: dict[str, float] = {}
     frames: list[str] = []
     _walk(message, "", found, frames, 0)
@@ -204,7 +281,8 @@ def _walk(value: Any, name: str, found: dict[str, float], frames: list[str], dep
 
 def _times_of(topic: Topic) -> tuple[np.ndarray, list[str]]:
     """The message's own stamps, datetime64[ns], where each has one, else when it was logged."""
-    seconds, parts = (np.array(topic.columns.get(name, [np.nan])) for name in STAMP)
+    columns = topic.columns()
+    seconds, parts = (columns.get(name, np.array([np.nan])) for name in STAMP)
     if np.isfinite(seconds).all() and np.isfinite(parts).all() and (seconds > 0).all():
         stamps = seconds.astype(np.int64) * 1_000_000_000 + parts.astype(np.int64)
         return stamps.view("M8[ns]"), [f"times of {topic.name} are those of header.stamp"]
@@ -214,9 +292,7 @@ def _times_of(topic: Topic) -> tuple[np.ndarray, list[str]]:
 def _to_table(topic: Topic, seconds: Array, notes: list[str]) -> Table:
     """The topic's columns by time, those of known messages by sepcal's headers."""
     columns = {
-        name: np.array(values)
-        for name, values in topic.columns.items()
-        if not name.startswith("header.")
+        name: values for name, values in topic.columns().items() if not name.startswith("header.")
     }
     known, taken, note = known_columns(topic.kind, columns, topic.frame)
     columns = known | {name: v for name, v in columns.items() if name not in taken}

@@ -12,6 +12,8 @@ import re
 import zipfile
 from typing import IO
 
+import numpy as np
+
 from sepcal.whole_files import open_scratch_part
 
 CHUNK = 2**20  # [bytes]
@@ -19,13 +21,16 @@ MOST_CELLS = 8_000_000  # of a sheet's box, each of 32 bytes
 SPARSEST = 4  # cells of the box for each that is there
 FEW_CELLS = 10_000  # as sparse as they like
 MOST_TEXT = 2**27  # [bytes], as if each cell of text had the longest
-# A cell's tag as all common writers have it, and whatever else may be one.
-CELL = re.compile(rb'<c r="([A-Z]{1,3})([0-9]{1,7})"(?: [a-z]+="[^"<>&]*")*\s?/?>')
+# A cell's tag as all common writers have it: this, a column and a row, and what is left of it.
+CELL = b'<c r="'
+REST_OF_CELL = re.compile(rb'"(?: [a-z]+="[^"<>&]*")*\s?/?>')
+ENDS_A_NAME = np.isin(np.arange(256), list(b" \t\n\r\v\f/>"))  # of a tag, by the code behind it
+MOST_LETTERS, MOST_DIGITS, MOST_RESTS = 3, 7, 200  # of a column, a row, and of rests in a piece
 ANY_CELL = re.compile(rb"<(?:[^\s<>/]*:)?c(?=[\s/>])")
 SHARED_TEXTS, SHARED_TEXT = "xl/sharedstrings.xml", b' t="s"'
 # Errors, which it reads as empty; dates as text, and dates since 1904.
-LEFT_TO_OPENPYXL = re.compile(rb""" t="[ed]"|date1904\s*=\s*["'](?:1|true)""")
-LEFT_MARKS = (b' t="e"', b' t="d"', b"date1904")
+LEFT_CELLS = (b' t="e"', b' t="d"')
+SINCE_1904 = re.compile(rb"""date1904\s*=\s*["'](?:1|true)""")
 # A format of numbers is a date's by a letter of dates that is no part of these.
 FORMAT = re.compile(rb'formatCode="([^"]*)"')
 LETTER_OF_DATES = re.compile(rb"[dmyhs]", re.IGNORECASE)
@@ -65,16 +70,16 @@ class _Look:
 
     def take(self, piece: bytes) -> bool:
         """Looks at whole tags. Returns whether python-calamine reads them as openpyxl does."""
-        if any(mark in piece and LEFT_TO_OPENPYXL.search(piece) for mark in LEFT_MARKS):
+        if b"date1904" in piece and SINCE_1904.search(piece):
             return False
-        found = CELL.findall(piece)
-        is_plain = b":c" not in piece and piece.count(b"<c") == len(found)
-        if not is_plain and len(found) != len(ANY_CELL.findall(piece)):
+        found = _cells_in(piece)
+        if found is None:
             return False
-        if found:
-            self.cells += len(found)
-            self.rows = max(self.rows, *map(int, {row for _, row in found}))
-            self.columns = max(self.columns, *map(_number_of, {column for column, _ in found}))
+        columns, rows = found
+        if rows.size:
+            self.cells += rows.size
+            self.rows = max(self.rows, int(rows.max()))
+            self.columns = max(self.columns, int(columns.max()))
             self.texts += piece.count(SHARED_TEXT)
         self.is_sheet = self.is_sheet or b"sheetData" in piece
         return not any(map(_is_doubtful, FORMAT.findall(piece)))
@@ -118,9 +123,56 @@ def _is_doubtful(form: bytes) -> bool:
     return bool(DOUBTFUL.search(first + others) or LETTER_OF_DATES.search(others))
 
 
-def _number_of(column: bytes) -> int:
-    """1 of A, 27 of AA."""
-    number = 0
-    for letter in column:
-        number = 26 * number + letter - ord("A") + 1
-    return number
+def _cells_in(piece: bytes) -> tuple[np.ndarray, np.ndarray] | None:
+    """Columns and rows of all cells, from 1; None where a tag is not as common writers have it.
+
+    Digit by digit over all cells at once, which is several times as fast as an expression.
+    """
+    padded = piece + bytes(64)
+    codes = np.frombuffer(padded, np.uint8)
+    eights = np.ndarray(len(padded) - 7, "<u8", padded, strides=(1,))  # bytes from each one on
+    tags = np.flatnonzero(codes == ord("<"))
+    tags = tags[codes[tags + 1] == ord("c")]
+    tags = tags[ENDS_A_NAME[codes[tags + 2]]]
+    if b":c" in piece and len(ANY_CELL.findall(piece)) != tags.size:
+        return None
+    if (eights[tags] << 16 != int.from_bytes(CELL, "little") << 16).any():
+        return None
+    letters = _count_up(codes, tags + len(CELL), MOST_LETTERS, b"AZ", 1)
+    digits = _count_up(codes, letters[1], MOST_DIGITS, b"09", 0)
+    if not letters[2] or not digits[2] or not _end_as_usual(piece, codes, digits[1]):
+        return None
+    return letters[0], digits[0]
+
+
+def _count_up(
+    codes: np.ndarray, at: np.ndarray, most: int, span: bytes, first: int
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Numbers of digits in a span of letters, where each ends, and whether each has a digit."""
+    base = span[1] - span[0] + 1
+    values = np.zeros(at.size, np.int64)
+    end = at
+    goes_on = np.ones(at.size, dtype=bool)
+    for _ in range(most):
+        digit = codes[end] - np.uint8(span[0])  # below the span it wraps round to a large one
+        goes_on &= digit < base
+        if not goes_on.any():
+            break
+        values = np.where(goes_on, values * base + digit + first, values)
+        end = end + goes_on
+    return values, end, bool((end > at).all())
+
+
+def _end_as_usual(piece: bytes, codes: np.ndarray, at: np.ndarray) -> bool:
+    """Whether what is left of each tag, from `at`, is such; few of them differ."""
+    for _ in range(MOST_RESTS):
+        if not at.size:
+            return True
+        rest = piece[at[0] : piece.find(b">", at[0]) + 1]
+        if REST_OF_CELL.fullmatch(rest) is None or any(mark in rest for mark in LEFT_CELLS):
+            return False
+        differs = np.zeros(at.size, dtype=bool)
+        for offset, byte in enumerate(rest):
+            differs |= codes[np.minimum(at + offset, codes.size - 1)] != byte
+        at = at[differs]
+    return False

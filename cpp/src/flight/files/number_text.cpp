@@ -20,6 +20,8 @@ bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0;
 
 /// With "-" for a minus sign, " " for every blank and "'" for the Swiss mark of thousands.
 std::string in_ascii(std::string_view cell) {
+  const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+  if (std::ranges::all_of(cell, is_ascii)) return std::string(cell);
   std::string text;
   const auto take_one_of = [&](std::span<const std::string_view> signs, char letter) {
     const auto sign =

@@ -71,11 +71,10 @@ std::size_t find_suffix(std::string_view cell) {
     return std::string_view::npos;
   }
   for (std::size_t end = std::min(cell.size() - 1, digits); end > 0; --end) {
-    const std::string_view number = cell.substr(0, end + 1);
-    if (!look_at_number(number).is_number) continue;
     const std::string_view rest = cell.substr(end + 1);
-    const bool is_unit = !rest.empty() && rest.size() <= longest && is_unit_like(rest);
-    return is_unit ? end + 1 : std::string_view::npos;
+    if (rest.size() > longest) break;  // a line that another delimiter cuts
+    if (!look_at_number(cell.substr(0, end + 1)).is_number) continue;
+    return !rest.empty() && is_unit_like(rest) ? end + 1 : std::string_view::npos;
   }
   return std::string_view::npos;
 }
