@@ -159,11 +159,7 @@ Tracked track_columns(const Model& model, const py::dict& columns,
   const Record record = record_of(columns, labels);
   const Released released;
   CalibrationOptions batch = options;
-  if (how.method == TrackMethod::rml) batch.fit.method = FitMethod::filter_error;
-  if (how.method != TrackMethod::rml && !how.process_noise.empty()) {
-    batch.fit.method = FitMethod::filter_error;
-    batch.fit.process_noise = how.process_noise;
-  }
+  batch.fit = fit_of_start(*model.block, batch.fit, how);
   const StreamStart begin =
       start ? start_from_fit(start->fit) : start_of_rows(model, record, asked.start_rows, batch);
   const std::shared_ptr<const BlockModel> laid = model.along ? model.along(&record) : model.block;

@@ -64,8 +64,8 @@ Fit fit_restricted(const BlockModel& model, const Record& record, FitOptions opt
                    const Fit& fit) {
   std::vector<Process> processes = estimated_in(fit, model, options);
   if (processes.empty()) return fit;
-  for (const Parameter& parameter : fit.parameters) {
-    if (!parameter.fixed) options.start[parameter.name] = parameter.value;
+  for (const Variable& parameter : model.tables().nonlinear) {
+    if (!fit[parameter.name].fixed) options.start[parameter.name] = fit[parameter.name].value;
   }
   const auto fit_at = [&] {
     for (const Process& process : processes) options.process_noise[process.name] = process.size;

@@ -385,6 +385,16 @@ std::vector<Variable> table_of(const Track& track, const BlockModel& model) {
   return table;
 }
 
+FitOptions fit_of_start(const BlockModel& model, FitOptions fit, const TrackOptions& how) {
+  if (!how.noise.empty()) fit.noise = how.noise;
+  if (how.method != TrackMethod::rml && how.process_noise.empty()) return fit;
+  fit.method = FitMethod::filter_error;
+  fit.process_noise = how.process_noise;
+  if (how.method == TrackMethod::rml) return fit;
+  for (const Variable& noise : model.process_noises()) fit.process_noise.emplace(noise.name, 0.0);
+  return fit;
+}
+
 Track track(const BlockModel& model, const Record& record, const StreamStart& start,
             const TrackOptions& options) {
   check_of_method(options);

@@ -164,4 +164,34 @@ TEST_CASE("units of the states cost transition and noise no digits") {
   }
 }
 
+TEST_CASE("noise that reaches states by a long way alone leaves them covariances that have roots") {
+  // A turning aircraft's u v w, attitude and position, of which noise drives u alone.
+  using Matrix9d = Eigen::Matrix<double, 9, 9>;
+  const double dt = 0.1;
+  Matrix9d F = Matrix9d::Zero();
+  F.topLeftCorner<3, 3>() << 0, 0.1, -0.02, -0.1, 0, 0.05, 0.02, -0.05, 0;
+  F.block<3, 3>(0, 3) << 0, -9.8, 0, 9.7, 0.05, 0, -1.2, -0.4, 0;
+  F.block<3, 3>(3, 3) << 1e-3, 0.1, 0, -0.1, 0, 0, 0.02, 1e-3, 0;
+  F.bottomLeftCorner<3, 3>() << 0.31, -0.94, 0.1, 0.94, 0.32, 0.02, -0.05, 0.09, 0.99;
+  F.block<3, 3>(6, 3) << 0.9, -2, 38, 1.8, -1, -12, 0.2, -40, 0;
+  for (const int driven : {0, 1, 2, 5}) {
+    CAPTURE(driven);
+    Matrix9d density = Matrix9d::Zero();
+    density(driven, driven) = 1e-8;
+    const Matrix9d Q = discretise<9>(F, density, dt).Q_d;
+    CHECK(sepcal::states::upper_root(Q).allFinite());
+    const Matrix9d exact = integrate(
+        [&](double s) -> Matrix9d {
+          const Matrix9d E = sepcal::matrix_exponential(Matrix9d(F * s));
+          return E * density * E.transpose();
+        },
+        dt);
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j < 9; ++j) {
+        CHECK(std::abs(Q(i, j) - exact(i, j)) <= 1e-11 * std::sqrt(exact(i, i) * exact(j, j)));
+      }
+    }
+  }
+}
+
 }  // namespace discretise_test

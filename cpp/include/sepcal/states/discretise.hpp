@@ -6,6 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "sepcal/detail/states/triangle.hpp"
 #include "sepcal/states/matrix_exponential.hpp"
 
 namespace sepcal {
@@ -16,44 +17,74 @@ struct DiscreteNoise {
   Eigen::Matrix<Scalar, NX, NX> Q_d;  // integral of exp(F s) G Q G' exp(F's) ds over dt; Gamma = I
 };
 
-/// Phi and Q_d from F (1/s), the density = G Q G' (state^2/s) and dt (s). S 3.7 and 3.11 leave
-/// Gamma Q_d Gamma' open: with Q_d = Q they are wrong by a factor of dt. Van Loan's block
-/// exp([-F density; 0 F'] dt) = [. E12; 0 E22], Phi = E22', Q_d = Phi E12, is taken over dt / 2^s
-/// only, where its exp(-F dt) is harmless, and doubled s times: Q_d <- Q_d + Phi Q_d Phi', which
-/// adds positive terms. Of F dt balanced: units of states don't count. All NaN where an argument is
-/// not finite.
-template <int NX, class Scalar = double>
-DiscreteNoise<NX, Scalar> discretise(
-    const Eigen::Matrix<Scalar, NX, NX>& F,
-    const std::type_identity_t<Eigen::Matrix<Scalar, NX, NX>>& density,
-    std::type_identity_t<Scalar> dt) {
+namespace states {
+
+/// Van Loan's block exp([-F density; 0 F'] dt) = [. E12; 0 E22], Phi = E22', Q_d = Phi E12, taken
+/// over dt / 2^s only, where its exp(-F dt) is harmless, and doubled s times: Q_d <- Q_d + Phi Q_d
+/// Phi', which adds positive terms. `whole`: F dt.
+template <int NX, class Scalar>
+DiscreteNoise<NX, Scalar> double_up(const Eigen::Matrix<Scalar, NX, NX>& whole,
+                                    const Eigen::Matrix<Scalar, NX, NX>& density, Scalar dt) {
   using Matrix = Eigen::Matrix<Scalar, NX, NX>;
-  constexpr int both = states::together(NX, NX);
+  constexpr int both = together(NX, NX);
   using Square = Eigen::Matrix<Scalar, both, both>;
-  const Eigen::Index n = F.rows();
-  Matrix whole = F * dt;
-  const Eigen::Vector<Scalar, NX> d = states::balance(whole);
-  const int doublings = states::count_halvings(whole);
-  const Matrix balanced_density =
-      d.cwiseInverse().asDiagonal() * density * d.cwiseInverse().asDiagonal();
-  const Scalar size = states::column_norm(balanced_density);  // Q_d is linear in it
+  const Eigen::Index n = whole.rows();
+  const int doublings = count_halvings(whole);
+  const Scalar size = column_norm(density);  // Q_d is linear in it
   const Scalar unit = size > 0 ? 1 / size : Scalar(1);
   const Scalar part = std::ldexp(Scalar(1), -doublings);
   Square block = Square::Zero(2 * n, 2 * n);
   block.template topLeftCorner<NX, NX>(n, n) = -whole * part;
   block.template bottomRightCorner<NX, NX>(n, n) = whole.transpose() * part;
-  block.template topRightCorner<NX, NX>(n, n) = balanced_density * unit;
+  block.template topRightCorner<NX, NX>(n, n) = density * unit;
   const Square E = matrix_exponential(block);
 
   Matrix Phi = E.template bottomRightCorner<NX, NX>(n, n).transpose();
-  Matrix Q = states::product(Phi, E.template topRightCorner<NX, NX>(n, n));
+  Matrix Q = product(Phi, E.template topRightCorner<NX, NX>(n, n));
   for (int k = 0; k < doublings; ++k) {
-    Q += states::product(Phi, Q, Phi.transpose());
-    Phi = states::product(Phi, Phi);
+    Q += product(Phi, Q, Phi.transpose());
+    Phi = product(Phi, Phi);
   }
   Q = (Scalar(0.5) * dt * part / unit) * (Q + Q.transpose()).eval();
-  return {d.asDiagonal() * Phi * d.cwiseInverse().asDiagonal(),
-          d.asDiagonal() * Q * d.asDiagonal()};
+  return {Phi, Q};
+}
+
+/// Roots of Q's diagonal, none below its largest by more than rounding tells.
+template <int NX, class Scalar>
+Eigen::Vector<Scalar, NX> deviations_of(const Eigen::Matrix<Scalar, NX, NX>& Q) {
+  const Scalar least = rounding<Scalar> * Q.diagonal().maxCoeff();
+  return Q.diagonal().cwiseMax(least).cwiseSqrt();
+}
+
+}  // namespace states
+
+/// Phi and Q_d from F (1/s), the density = G Q G' (state^2/s) and dt (s). S 3.7 and 3.11 leave
+/// Gamma Q_d Gamma' open: with Q_d = Q they are wrong by a factor of dt. Of F dt balanced: units of
+/// states don't count. Where noise reaches states by a long way alone, as a position's by a rate's,
+/// rounding beside the largest variance takes theirs below zero: then it is done again in units of
+/// their standard deviations, with variances larger by what rounding makes of these. All NaN where
+/// an argument is not finite.
+template <int NX, class Scalar = double>
+DiscreteNoise<NX, Scalar> discretise(
+    const Eigen::Matrix<Scalar, NX, NX>& F,
+    const std::type_identity_t<Eigen::Matrix<Scalar, NX, NX>>& density,
+    std::type_identity_t<Scalar> dt) {
+  Eigen::Matrix<Scalar, NX, NX> whole = F * dt;
+  Eigen::Vector<Scalar, NX> d = states::balance(whole);
+  const auto in_units_of_d = [&] {
+    return states::double_up<NX, Scalar>(
+        d.cwiseInverse().asDiagonal() * F * dt * d.asDiagonal(),
+        d.cwiseInverse().asDiagonal() * density * d.cwiseInverse().asDiagonal(), dt);
+  };
+  DiscreteNoise<NX, Scalar> step = in_units_of_d();
+  if (step.Q_d.allFinite() && !states::upper_root(step.Q_d).allFinite()) {
+    const Scalar slack = Scalar(100) * static_cast<Scalar>(F.rows()) * states::rounding<Scalar>;
+    d = d.cwiseProduct(states::deviations_of<NX, Scalar>(step.Q_d));
+    step = in_units_of_d();
+    step.Q_d.diagonal() *= 1 + slack;  // what is known exactly is so within rounding
+  }
+  return {d.asDiagonal() * step.Phi * d.cwiseInverse().asDiagonal(),
+          d.asDiagonal() * step.Q_d * d.asDiagonal()};
 }
 
 template <int NX, int NU, class Scalar = double>

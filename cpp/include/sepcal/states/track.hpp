@@ -122,6 +122,10 @@ struct Track {
 /// The track's names with their units, as its model has them.
 std::vector<Variable> table_of(const Track& track, const BlockModel& model);
 
+/// Options of the fit of first rows that such a track begins with: by filter error where noise
+/// drives the states, and for rml; but for rml, which estimates it, with no noise but the track's.
+FitOptions fit_of_start(const BlockModel& model, FitOptions fit, const TrackOptions& how);
+
 /// Goes on where `start` ends, after start.rows rows. Outputs that are NaN are missing. A model
 /// with a state is one for this record; it starts by start_from_rows(), or from another flight's
 /// calibration by start_from_fit(). By rls it is linearised along the whole trajectory from the

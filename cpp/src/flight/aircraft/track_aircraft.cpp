@@ -30,13 +30,7 @@ StreamStart start_of(const AircraftFit& fitted, const Flight& flight, const Laid
   const std::size_t rows = how.start_rows;
   if (rows == 0) return start_from_fit(fitted.fit);
   AircraftOptions options = fitted.options;
-  if (how.how.method == TrackMethod::rml || !how.how.process_noise.empty()) {
-    options.calibration.fit.method = FitMethod::filter_error;
-    if (how.how.method != TrackMethod::rml) {
-      options.calibration.fit.process_noise = how.how.process_noise;
-    }
-  }
-  if (!how.how.noise.empty()) options.calibration.fit.noise = how.how.noise;
+  options.calibration.fit = fit_of_start(*laid.model, options.calibration.fit, how.how);
   if (laid.initial_states.empty()) {
     return start_from_rows(*laid.model, readings_of(laid), rows, options.calibration.fit);
   }
