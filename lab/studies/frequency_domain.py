@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Equation error over a band and row by row, in turbulence: are their errors honest?
+"""Equation and output error over a band and in time, in turbulence: are their errors honest?
 
 A longitudinal flight of 40 s at 50 Hz is made here with NumPy: coefficients linear in angle of
 attack, pitch rate and elevator, gusts that the aircraft and its vane feel, and readings with noise
-(of vane and gyro so little that regressors are known) and, of one case, with drift.
+(of vane and gyro so little that regressors are known) and, of one case, with drift. Output error is
+of short_period_over_a_band.py's flights, beside a maximum likelihood in NumPy.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 
 import sepcal
 from sepcal.columns import Array
+from studies import short_period_over_a_band as short_period
 from studies.study import Finding, Outcome, Progress, Study, seed_range, seeds
 
 STEP = 0.02  # s
@@ -33,6 +35,7 @@ TRUTH = {
 }  # fmt: skip
 JUDGED = [name for name in TRUTH if not name.endswith("_0")]
 BAND = (0.1, 2.0)  # Hz
+OUTPUT_ERROR_GUSTS = (0.0, 0.0087)  # rad
 
 
 @dataclass(frozen=True)
@@ -117,9 +120,45 @@ def scaled_errors(seed: int, case: Case) -> Array:
     return np.array(found)
 
 
+def output_errors(seed: int, gusts: float) -> tuple[Array, Array]:
+    """(3, 6) scaled errors over the band, by NumPy and in time; (6,) from NumPy's to the band's."""
+    read = short_period.fly(seed, gusts)
+    band = short_period.by_sepcal(read, short_period.BAND)
+    numpy = short_period.by_numpy(read)
+    in_time = short_period.by_sepcal(read, None)
+    apart = np.abs(band.values - numpy.values) / band.errors
+    return np.array([band.scaled(), numpy.scaled(), in_time.scaled()]), apart
+
+
+def judge_output_error(found: list[tuple[Array, Array]], gusts: float) -> tuple[str, list[Finding]]:
+    """Of all seeds; how often intervals hold in gusts is told, and has no limit."""
+    scaled, apart = np.array([one for one, _ in found]), np.array([far for _, far in found])
+    words = "output error in still air" if gusts == 0.0 else "output error in gusts of 0.5 deg"
+    furthest = float(np.max(apart))
+    findings = [
+        Finding(f"{words}, from NumPy's", f"{furthest:.2f} standard errors", "0.3", furthest < 0.3)
+    ]
+    ways = []
+    for i, way in enumerate(("band", "NumPy", "time")):
+        hold = np.mean(np.abs(scaled[:, i]) < 1.96)
+        each = " ".join(f"{rms:.2f}" for rms in np.sqrt(np.mean(scaled[:, i] ** 2, axis=0)))
+        mean = " ".join(f"{off:+.2f}" for off in np.mean(scaled[:, i], axis=0))
+        ways.append(f"{way} {hold:.1%} hold, {each} standard errors rms, {mean} mean")
+        if gusts == 0.0:
+            kept = 0.92 < hold < 0.98
+            findings.append(Finding(f"{words}, {way}", f"{hold:.1%} hold", "92 to 98 %", kept))
+    middle = float(np.median(apart))
+    return (
+        f"{words} of {' '.join(short_period.TRUTH)}: {'; '.join(ways)}; band and NumPy "
+        f"{middle:.3f} standard errors apart in the middle, {furthest:.2f} at most",
+        findings,
+    )
+
+
 def run(options: argparse.Namespace, report_progress: Progress) -> Outcome:
     """Every case, all seeds."""
     findings, figures = [], []
+    steps = len(CASES) + len(OUTPUT_ERROR_GUSTS)
     sizes = np.array([abs(TRUTH[name]) for name in JUDGED])
     with ThreadPoolExecutor(options.processes) as pool:
         for done, case in enumerate(CASES):
@@ -139,14 +178,20 @@ def run(options: argparse.Namespace, report_progress: Progress) -> Outcome:
                     kept = 0.92 < hold < 0.98
                     findings.append(Finding(case.words, f"{hold:.1%} hold", "92 to 98 %", kept))
             figures.append(f"{case.words}: {'; '.join(words)}")
-            report_progress((done + 1) / len(CASES))
+            report_progress((done + 1) / steps)
+        for done, gusts in enumerate(OUTPUT_ERROR_GUSTS):
+            runs = [pool.submit(output_errors, seed, gusts) for seed in seed_range(options)]
+            told, judged = judge_output_error([one.result() for one in runs], gusts)
+            figures.append(told)
+            findings.extend(judged)
+            report_progress((len(CASES) + done + 1) / steps)
     return Outcome(". ".join(figures), findings)
 
 
 STUDY = Study(
     name="frequency-domain",
-    shows="how far equation error over a band and row by row is off in turbulence, and how often "
-    "its intervals hold",
+    shows="how far equation and output error over a band and in time are off in turbulence, how "
+    "often their intervals hold, and output error beside NumPy's",
     run=run,
     options=seeds(SEEDS, "flights of each case"),
 )

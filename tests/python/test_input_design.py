@@ -59,6 +59,43 @@ def test_schroeders_phases_are_schroeders() -> None:
     assert made.peak_factors["elevator_rad"] == pytest.approx(peak_factor(u), rel=2e-3)
 
 
+def relative_peak_factor(harmonics: Array, phases: Array) -> float:
+    """Of sines of one power, by 64 points a period of the highest."""
+    t = np.arange(64 * int(harmonics[-1])) / (64 * harmonics[-1])
+    return peak_factor(np.sin(2 * np.pi * np.outer(t, harmonics) + phases).sum(axis=1))
+
+
+def newman(count: int) -> Array:
+    """D. J. Newman's phases pi (m - 1)^2 / n (S. Boyd, IEEE Trans. Circuits Syst. 33, 1986)."""
+    return np.asarray(np.pi * np.arange(count) ** 2 / count)
+
+
+def schroeder(count: int) -> Array:
+    """-pi m (m - 1) / n (M. R. Schroeder, IEEE Trans. Inf. Theory 16, 1970) of a level spectrum."""
+    m = np.arange(1, count + 1)
+    return np.asarray(-np.pi * m * (m - 1) / count)
+
+
+@pytest.mark.parametrize("count", [8, 16, 31])
+def test_peaks_lie_below_published_formulas(count: int) -> None:
+    made = sepcal.multisines({"u": 1.0}, band=(0.1, 0.1 * count), duration=10.0, rate=100.0)
+    harmonics = np.arange(1, count + 1)
+    assert_allclose(made.frequencies["u"], harmonics / 10.0)
+    published = [relative_peak_factor(harmonics, way(count)) for way in (schroeder, newman)]
+    assert min(published) > 1.15
+    assert made.peak_factors["u"] < min(published) - 0.1
+
+
+def test_peaks_of_three_interleaved_inputs_lie_below_published_formulas() -> None:
+    made = sepcal.multisines(SIZES, band=(0.1, 2.0), duration=20.0)
+    for name in SIZES:
+        harmonics = np.round(made.frequencies[name] * 20.0)
+        assert len(harmonics) == 13
+        published = [relative_peak_factor(harmonics, way(13)) for way in (schroeder, newman)]
+        assert made.peak_factors[name] < min(published) - 0.1
+        assert made.peak_factors[name] < 1.13
+
+
 def test_steps_put_most_of_their_energy_into_the_band() -> None:
     made = sepcal.three_two_one_one({"elevator_rad": 0.05}, band=(0.3, 0.9), rate=100.0)
     u = made.signals["elevator_rad"]

@@ -115,7 +115,7 @@ std::vector<OutputRange> put_modelled(const Values& values, LaidAircraft& laid) 
     at.parameters.push_back({.name = parameter.name, .unit = parameter.unit});
     at.parameters.back().value = known == values.end() ? 0.0 : known->second;
   }
-  at.n_1 = static_cast<int>(tables.n_1());
+  at.n_1 = tables.n_1();
   base::ThreadPool pool(1);
   const Eigen::MatrixXd residuals = verbs::residuals_of(*laid.model, laid.record, at, pool);
   std::vector<OutputRange> ranges;
