@@ -62,6 +62,84 @@ def advised(said: str) -> list[str]:
     return ["--map", *shlex.split(found.group(1))]
 
 
+def advised_of_all(said: str) -> list[str]:
+    """The same, of several columns."""
+    found = re.search(r"--map ('[^']*'|\S+) reads them so", said)
+    assert found, said
+    return ["--map", *shlex.split(found.group(1))]
+
+
+@pytest.mark.parametrize(
+    ("headers", "clock"),
+    [
+        ("time_s,GPS_N,GPS_E,GPS_D,AIRSPD", lambda at: str(at["time"])),
+        ("Time_s,VN,VE,VD,TAS", lambda at: f"{at['time']:.1f}"),
+        ("time_s,GPS_N (m/s),GPS_E (m/s),GPS_D (m/s),airspeed_mps", lambda at: str(at["time"])),
+        ("timestamp,GPS N,GPS E,GPS D,true airspeed", lambda at: f"{1e6 * at['time']:.0f}"),
+        ("t,vel_n,vel_e,vel_d,ias", lambda at: f"{1000 * at['time']:.0f}"),
+        ("Time,/v/v-north-mps,/v/v-east-mps,/v/v-down-mps,/air/speed,TAS_mps",
+         lambda at: f"{at['time']:.1f}"),
+    ],
+)  # fmt: skip
+def test_one_option_for_all_columns(
+    headers: str, clock: Callable[[dict[str, float]], str], tmp_path: Path
+) -> None:
+    """One line, and what it advises reads the log: units by the steps of time."""
+    unread = ",0" * (headers.count(",") - 4)
+    write(
+        tmp_path / "log.csv",
+        headers,
+        lambda at: f"{clock(at)},{velocity(at)}{unread},{at['read']:.4f}",
+    )
+    refused = fit(tmp_path)
+    assert refused.code == 2
+    assert_true(fit(tmp_path, *advised_of_all(refused.err)))
+
+
+def test_units_of_a_magnetometer_and_its_angles(tmp_path: Path) -> None:
+    """Gauss by the Earth's field, degrees by a turn."""
+    draw = np.random.default_rng(3)
+    rows = ["timestamp,MagX,MagY,MagZ,Roll,Pitch,Yaw"]
+    for row in range(400):
+        roll, pitch, yaw = draw.uniform((-3, -1.5, -3), (3, 1.5, 3))
+        (cr, cp, cy), (sr, sp, sy) = np.cos((roll, pitch, yaw)), np.sin((roll, pitch, yaw))
+        to_body = np.array(
+            [[cp * cy, cp * sy, -sp],
+             [sr * sp * cy - cr * sy, sr * sp * sy + cr * cy, sr * cp],
+             [cr * sp * cy + sr * sy, cr * sp * sy - sr * cy, cr * cp]]
+        )  # fmt: skip
+        read = to_body @ (19.7, -1.4, 49.4) + (12, -7, 5) + draw.normal(0, 0.1, 3)
+        cells = [*(read / 100), *np.degrees((roll, pitch, yaw))]
+        rows.append(f"{50_000_000 + 100_000 * row}," + ",".join(f"{cell:.6f}" for cell in cells))
+    (tmp_path / "log.csv").write_text("\n".join(rows) + "\n")
+    options = ["fit", "log.csv", "--field", "19.7,-1.4,49.4", "--json"]
+    for _ in range(4):
+        fitted = run("sepcal-mag", *options, folder=tmp_path)
+        if fitted.code != 2:
+            break
+        found = re.search(r"--map (\S+) reads (it|them)", fitted.err)
+        assert found, fitted.err
+        options += ["--map", found.group(1)]
+    assert fitted.code == 0, fitted.err
+    assert options.count("--map") <= 2
+    values = {name: entry["value"] for name, entry in fitted.result["parameters"].items()}
+    assert abs(values["n_x"] - 12) < 0.1
+    assert abs(values["n_y"] + 7) < 0.1
+
+
+def test_names_with_units_come_before_short_ones(tmp_path: Path) -> None:
+    """Garmin's G3X has two lines of names, of which the upper one says the units."""
+    write(
+        tmp_path / "log.csv",
+        '#airframe_info,log_version="1.03",product="GDU 460"\n'
+        "UTC Time (s),GPS Velocity N (m/s),GPS Velocity E (m/s),GPS Velocity D (m/s),"
+        "True Airspeed (kt)",
+        lambda at: f"{at['time']},{velocity(at)},{at['read'] / KNOT:.5f}",
+        "UTC Time,GPSVelN,GPSVelE,GPSVelD,TAS\n",
+    )
+    assert_true(fit(tmp_path))
+
+
 def seconds(at: dict[str, float]) -> str:
     return f"{345600 + at['time']:.1f}"
 
@@ -176,21 +254,6 @@ def test_speed_over_ground_in_another_unit(tmp_path: Path) -> None:
     assert "mps under the header gs_kt" in warned.err
     assert "--map gs_mps=gs_kt reads it so" in warned.err
     assert_true(fit(tmp_path, "--map", "gs_mps=gs_kt"))
-
-
-def test_names_of_receivers(tmp_path: Path) -> None:
-    """One --map after the other, as it is advised."""
-    write(
-        tmp_path / "log.csv",
-        "time_s,GPS_N,GPS_E,GPS_D,AIRSPD",
-        lambda at: f"{at['time']},{velocity(at)},{at['read']:.4f}",
-    )
-    options: list[str] = []
-    for _ in range(4):
-        refused = fit(tmp_path, *options)
-        assert refused.code == 2
-        options += advised(refused.err)
-    assert_true(fit(tmp_path, *options))
 
 
 def test_cells_in_two_units(tmp_path: Path) -> None:

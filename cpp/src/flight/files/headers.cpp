@@ -229,21 +229,103 @@ Message ask_for_near_miss(std::string_view quantity, UnitKind kind,
   return {};
 }
 
+std::optional<MappedColumn> find_near_column(std::string_view quantity, UnitKind kind,
+                                             std::span<const std::string> others) {
+  const std::vector<NearMiss> near = find_near_misses(quantity, kind, others);
+  if (near.size() == 1) return MappedColumn{near[0].accepted, near[0].header, kind, true};
+  const std::string* header = near.empty() ? find_without_unit(quantity, others) : nullptr;
+  const auto units = known_units(kind);
+  if (header == nullptr || units.empty() || header->find_first_of("([") != std::string::npos) {
+    return std::nullopt;
+  }
+  return MappedColumn{fmt::format("{}_{}", quantity, units.front().suffix), *header, kind, false};
+}
+
+const Unit& likely_unit(const Flight& flight, std::string_view logged, UnitKind kind) {
+  constexpr std::size_t looked_at = 2000;
+  constexpr double usual_field = 60.0;  // [uT], of an axis at most, with hard iron
+  const std::span<const Unit> units = known_units(kind);
+  const auto found = std::ranges::find(flight.columns(), logged, &Flight::Column::logged_header);
+  if (found == flight.columns().end()) return units.front();
+  const std::span<const double> values(found->values.data(),
+                                       std::min(found->values.size(), looked_at));
+  double largest = 0.0;
+  std::vector<double> steps;
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (std::isfinite(values[row])) largest = std::max(largest, std::abs(values[row]));
+    if (row > 0 && values[row] > values[row - 1]) steps.push_back(values[row] - values[row - 1]);
+  }
+  if (kind == UnitKind::angle) {
+    constexpr double turn = 2.02 * std::numbers::pi;
+    return largest > turn ? *find_unit(kind, "deg") : units.front();
+  }
+  if (kind == UnitKind::field && largest > 0.0) {
+    return *std::ranges::min_element(units, {}, [&](const Unit& unit) {
+      return std::abs(std::log(unit.convert(largest) / usual_field));
+    });
+  }
+  if (kind == UnitKind::time && !steps.empty()) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::ranges::nth_element(steps, middle);
+    for (const std::string_view suffix : {"s", "ms", "us", "ns"}) {
+      constexpr double longest = 20.0;  // [s] between rows
+      const Unit& unit = *find_unit(kind, suffix);
+      if (unit.convert(*middle) <= longest) return unit;
+    }
+  }
+  return units.front();
+}
+
+Message ask_for_columns(std::span<const MappedColumn> columns) {
+  std::vector<std::string> pairs;
+  std::vector<std::string> bare;
+  std::vector<std::string_view> rest;  // units that the first of the bare may have too
+  std::string_view taken;
+  for (const MappedColumn& column : columns) {
+    pairs.push_back(fmt::format("{}={}", column.accepted, column.header));
+    if (column.says_unit) continue;
+    if (bare.empty()) {
+      taken = std::string_view(column.accepted).substr(column.accepted.rfind('_') + 1);
+      for (const Unit& unit : known_units(column.kind)) {
+        if (unit.suffix != taken) rest.push_back(unit.suffix);
+      }
+    }
+    bare.push_back(fmt::format("'{}'", column.header));
+  }
+  const bool is_one = columns.size() == 1;
+  std::string question =
+      is_one ? fmt::format("; did you mean '{}'? ", columns[0].header) : "; did you mean these? ";
+  std::string reads = is_one ? "reads it so" : "reads them so";
+  if (!bare.empty()) {
+    question = is_one
+                   ? fmt::format("; {} says no unit that is known: ", bare[0])
+                   : fmt::format("; no unit that is known is said by {}: ", fmt::join(bare, ", "));
+    if (is_one) reads = fmt::format("reads it in {}", taken);
+    if (!rest.empty()) reads += fmt::format("; known too: {}", fmt::join(rest, ", "));
+  }
+  return {std::move(question), Option{"map"},
+          fmt::format(" {} {}", base::in_shell(fmt::format("{}", fmt::join(pairs, ","))), reads)};
+}
+
 Message around(std::string before, Message hint, std::string after) {
   hint.insert(hint.begin(), std::move(before));
   hint.emplace_back(std::move(after));
   return hint;
 }
 
-Message describe_missing(std::string_view quantity, UnitKind kind,
-                         std::span<const std::string> others, const Unit* bare) {
+std::string say_missing(std::string_view quantity, UnitKind kind, const Unit* bare) {
   const std::vector<std::string> accepted = accepted_headers(quantity, kind, bare);
   std::string text = fmt::format("column '{}' is missing", accepted.front());
   if (accepted.size() > 1) {
     text += fmt::format(" ({} would do as well)",
                         fmt::join(accepted.begin() + 1, accepted.end(), ", "));
   }
-  return around(std::move(text), ask_for_near_miss(quantity, kind, others), "");
+  return text;
+}
+
+Message describe_missing(std::string_view quantity, UnitKind kind,
+                         std::span<const std::string> others, const Unit* bare) {
+  return around(say_missing(quantity, kind, bare), ask_for_near_miss(quantity, kind, others), "");
 }
 
 std::string header_of(const std::string& name, const std::string& unit) {

@@ -69,10 +69,34 @@ std::string map_pair(std::string_view accepted, std::string_view header);
 OptionError::Message ask_for_near_miss(std::string_view quantity, UnitKind kind,
                                        std::span<const std::string> others);
 
+/// A column of a log and the header under which --map reads it.
+struct MappedColumn {
+  std::string accepted;  // "vn_mps"
+  std::string header;    // "GPS_N"
+  UnitKind kind = UnitKind::own;
+  bool says_unit = false;  // else the first of its kind stands there
+};
+
+/// The one of `others` that ask_for_near_miss() maps; nothing where there is none, or several.
+std::optional<MappedColumn> find_near_column(std::string_view quantity, UnitKind kind,
+                                             std::span<const std::string> others);
+
+/// The unit of `kind` in which the values under a log's own header are most likely: times by their
+/// step, angles by their size, fields by the Earth's; else the one used inside.
+const Unit& likely_unit(const Flight& flight, std::string_view logged, UnitKind kind);
+
+/// "; no unit that is known is said by 'VN', 'VE': map vn_mps=VN,ve_mps=VE reads them so; known
+/// too: kt". One option for all of them; no header may hold what parts its pairs. One alone is
+/// asked for as ask_for_near_miss() does.
+OptionError::Message ask_for_columns(std::span<const MappedColumn> columns);
+
 /// One message of what stands before a hint, the hint and what follows it.
 OptionError::Message around(std::string before, OptionError::Message hint, std::string after);
 
-/// "column 'roll_rad' is missing (roll_deg would do as well)", and ask_for_near_miss().
+/// "column 'roll_rad' is missing (roll_deg would do as well)".
+std::string say_missing(std::string_view quantity, UnitKind kind, const Unit* bare = nullptr);
+
+/// The same, and ask_for_near_miss().
 OptionError::Message describe_missing(std::string_view quantity, UnitKind kind,
                                       std::span<const std::string> others,
                                       const Unit* bare = nullptr);

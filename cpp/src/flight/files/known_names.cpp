@@ -120,6 +120,15 @@ constexpr std::array other_quantities{
     OtherName{"vn", "velocityn"},
     OtherName{"vn", "velocitynorth"},
     OtherName{"vn", "northvelocity"},
+    OtherName{"vn", "gpsveln"},  // Garmin G3X
+    OtherName{"ve", "gpsvele"},
+    OtherName{"vu", "gpsvelu"},
+    OtherName{"vn", "speednorth"},  // FlightGear
+    OtherName{"ve", "speedeast"},
+    OtherName{"vd", "speeddown"},
+    OtherName{"vn", "northspeed"},
+    OtherName{"ve", "eastspeed"},
+    OtherName{"vd", "downspeed"},
     OtherName{"vn", "gpsn", asked_about},  // a position, maybe
     OtherName{"ve", "gpse", asked_about},
     OtherName{"vd", "gpsd", asked_about},
@@ -151,6 +160,7 @@ constexpr std::array other_quantities{
     OtherName{"gs", "gndspd"},  // Garmin
     OtherName{"gs", "groundspeed"},
     OtherName{"gs", "gndspeed"},
+    OtherName{"gs", "gspd"},  // EdgeTX
     OtherName{"gs", "sog"},
     OtherName{"gs", "gsp"},  // IGC
     OtherName{"gs", "gpsspeed"},
@@ -241,6 +251,9 @@ constexpr std::array other_quantities{
     OtherName{"mx", "magnetometerx"},
     OtherName{"my", "magnetometery"},
     OtherName{"mz", "magnetometerz"},
+    OtherName{"mx", "magneticfieldx"},
+    OtherName{"my", "magneticfieldy"},
+    OtherName{"mz", "magneticfieldz"},
     OtherName{"mx", "xmag"},
     OtherName{"my", "ymag"},
     OtherName{"mz", "zmag"},
@@ -314,6 +327,7 @@ constexpr std::array other_units{
     OtherName{"gauss", "oe"},  // in air
     OtherName{"gauss", "oersted"},
     OtherName{"gauss", "gs"},
+    OtherName{"gauss", "ga"},  // PX4
     OtherName{"mgauss", "mg"},
     OtherName{"mgauss", "milligauss"},
     OtherName{"t", "tesla"},

@@ -94,14 +94,25 @@ bool is_quantity(const std::string& cell) {
          });
 }
 
+/// Whether the cell is what a quantity is called, with its unit.
+bool is_quantity_in_unit(const std::string& cell) {
+  return std::ranges::any_of(known_quantities(), [&](const KnownQuantity& quantity) {
+    return recognise(cell, quantity).has_value();
+  });
+}
+
 /// How far a line's cells are names of `columns`: there, no units and different; those of
-/// quantities count more.
+/// quantities count more, the most with a unit.
 double score_names(const HeadLine& line, std::size_t columns) {
   std::set<std::string_view> names;
   double score = 0.0;
   for (const std::string& cell : line.cells) {
     if (says_nothing(cell) || !names.insert(cell).second) continue;
-    score += is_quantity(cell) ? 1.5 : is_unit_like(cell) ? 0.0 : 1.0;
+    if (is_quantity_in_unit(cell)) {
+      score += 2.0;
+    } else {
+      score += is_quantity(cell) ? 1.5 : is_unit_like(cell) ? 0.0 : 1.0;
+    }
   }
   return score / static_cast<double>(columns);
 }

@@ -138,8 +138,29 @@ double compare_with_rate(std::span<const double> yaw, const FindReading& find) {
   return both / rate_alone;
 }
 
+/// Whether a yaw begins within a turn and goes on beyond it without a jump, as fast as aircraft
+/// turn: degrees would have turned over, or be faster.
+bool goes_on_slowly(std::span<const double> yaw, const FindReading& find) {
+  constexpr std::size_t fewest = 20;
+  constexpr double fastest = 1.5;  // [rad/s], but for a twentieth of the rows
+  const auto time = find("time");
+  if (!time || yaw.size() < fewest || !(std::abs(yaw.front()) < 2.0 * std::numbers::pi)) {
+    return false;
+  }
+  std::vector<double> rates;
+  for (std::size_t row = 1; row < yaw.size(); ++row) {
+    const double step = std::abs(yaw[row] - yaw[row - 1]);
+    if (!(step < std::numbers::pi)) return false;
+    rates.push_back(step / (time->values[row] - time->values[row - 1]));
+  }
+  const auto high = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() * 19 / 20);
+  std::ranges::nth_element(rates, high);
+  return *high < fastest;
+}
+
 /// Whether a yaw beyond a turn is in radians all the same, and counts the turns: as such it turns
-/// with the course or the field, or as fast as r says, and as degrees it doesn't.
+/// with the course or the field, or as fast as r says, and as degrees it doesn't. Where none of
+/// these is in use, it goes on slowly.
 bool is_unwrapped(const Reading& yaw, const FindReading& find) {
   constexpr double of_degree = std::numbers::pi / 180.0;
   constexpr double closely = 0.7;
@@ -150,6 +171,7 @@ bool is_unwrapped(const Reading& yaw, const FindReading& find) {
     if (std::max(in_radians, in_degrees) > closely) return in_radians > in_degrees;
   }
   const double turns = compare_with_rate(yaw.values, find);
+  if (std::isnan(turns)) return goes_on_slowly(yaw.values, find);
   return turns > 1.0 / nearly && turns < nearly;
 }
 

@@ -181,6 +181,37 @@ OptionError::Message RecordBuilder::say_unknown(std::string_view name) const {
                       files::map_pair(accepted.front(), column.logged_header()))};
 }
 
+/// Of all that are missing, and of the time, a velocity and what is measured, so that one option
+/// reads the log; nothing where the first that is missing has none, or several.
+std::vector<files::MappedColumn> RecordBuilder::find_near_columns(
+    std::span<const std::string_view> names) const {
+  std::vector<std::string> others = other_headers();
+  std::erase_if(others, [](const std::string& header) {
+    return header.find_first_of(",=") != std::string::npos;  // which --map parts pairs at
+  });
+  std::vector<files::MappedColumn> found;
+  for (const ProbeQuantity& quantity : quantities_) {
+    const bool is_missing = std::ranges::find(names, quantity.name) != names.end();
+    const bool is_needed = quantity.is_measured || quantity.kind == files::UnitKind::time ||
+                           quantity.kind == files::UnitKind::speed;
+    if ((!is_missing && !is_needed) || has({quantity.name}) || unknown_.contains(quantity.name)) {
+      continue;
+    }
+    auto column = files::find_near_column(quantity.name, quantity.kind, others);
+    if (!column) {
+      if (quantity.name == names.front()) return {};
+      continue;
+    }
+    if (!column->says_unit) {
+      const files::Unit& unit = files::likely_unit(flight_, column->header, quantity.kind);
+      column->accepted = fmt::format("{}_{}", quantity.name, unit.suffix);
+    }
+    std::erase(others, column->header);
+    found.push_back(std::move(*column));
+  }
+  return found;
+}
+
 void RecordBuilder::fail_missing(std::span<const std::string_view> names) const {
   const auto inside = [this](std::string_view name) {
     const ProbeQuantity& quantity = quantity_of(name);
@@ -193,9 +224,12 @@ void RecordBuilder::fail_missing(std::span<const std::string_view> names) const 
   }
   std::vector<std::string> others;
   std::ranges::transform(names.subspan(1), std::back_inserter(others), inside);
+  const std::vector<files::MappedColumn> near = find_near_columns(names);
   throw OptionError(files::around(
       flight_.name() + ": ",
-      files::describe_missing(name, quantity.kind, other_headers(), quantity.bare),
+      near.empty() ? files::describe_missing(name, quantity.kind, other_headers(), quantity.bare)
+                   : files::around(files::say_missing(name, quantity.kind, quantity.bare),
+                                   files::ask_for_columns(near), ""),
       fmt::format("{}{}; {}{}",
                   others.empty() ? "" : fmt::format("; missing too: {}", fmt::join(others, ", ")),
                   say_other_ways(names), flight_.list_columns(),

@@ -103,6 +103,7 @@ class RecordBuilder {
   const ProbeQuantity& quantity_of(std::string_view name) const;
   std::vector<std::string> other_headers() const;
   OptionError::Message say_unknown(std::string_view name) const;
+  std::vector<files::MappedColumn> find_near_columns(std::span<const std::string_view> names) const;
   [[noreturn]] void fail_missing(std::span<const std::string_view> names) const;
   bool is_quantity(const Flight::Column& column) const;
   bool is_named_like_quantity(std::string_view header) const;

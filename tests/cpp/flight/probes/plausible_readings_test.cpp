@@ -128,6 +128,28 @@ TEST_CASE("a yaw that counts its turns in radians") {
   CHECK(with_rate(in_degrees)[0].ends_with("--map yaw_deg=yaw_rad reads it so"));
 }
 
+TEST_CASE("a yaw that counts its turns, with nothing beside it but time") {
+  constexpr double of_degree = 0.017453292519943295;
+  Values time, turns, degrees, jumping;
+  for (int row = 0; row < 400; ++row) {
+    time.push_back(0.1 * row);
+    turns.push_back(0.04 * row);                                      // 0.4 rad/s
+    degrees.push_back(0.04 * row / of_degree);                        // the same, going on
+    jumping.push_back(std::fmod(0.04 * row, 6.2831853) / of_degree);  // and turning over
+  }
+  const auto said = [&](const Values& yaw) {
+    return Readings()
+        .add("yaw", UnitKind::angle, yaw)
+        .add("time", UnitKind::time, time)
+        .describe()
+        .size();
+  };
+  CHECK(said(turns) == 0);
+  CHECK(said(degrees) == 1);
+  CHECK(said(jumping) == 1);
+  CHECK(Readings().add("yaw", UnitKind::angle, turns).describe().size() == 1);  // nobody can tell
+}
+
 TEST_CASE("temperature, density and static pressure") {
   CHECK(describe("temp", UnitKind::temperature, {12, 15}).find("if it is in degc") !=
         std::string::npos);
