@@ -173,6 +173,7 @@ class Options:
         geometry: str | None,
         equations: collections.abc.Mapping[str, collections.abc.Sequence[str]],
         trajectory: TrajectoryOptions,
+        position: bool = False,
         gravity: typing.SupportsFloat | typing.SupportsIndex,
         window: typing.SupportsFloat | typing.SupportsIndex,
         band: typing.Annotated[
