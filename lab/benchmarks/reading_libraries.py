@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -26,18 +27,14 @@ Columns = Mapping[str, Array]
 
 def write_parquet(columns: Columns, file: Path) -> None:
     """As pandas does by default, packed by Snappy."""
-    import pyarrow as pa
-    import pyarrow.parquet
-
-    pyarrow.parquet.write_table(pa.table(dict(columns)), file)
+    pa, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
+    parquet.write_table(pa.table(dict(columns)), file)
 
 
 def write_feather(columns: Columns, file: Path) -> None:
     """As pandas does by default, packed by LZ4."""
-    import pyarrow as pa
-    import pyarrow.feather
-
-    pyarrow.feather.write_feather(pa.table(dict(columns)), file)
+    pa, feather = import_module("pyarrow"), import_module("pyarrow.feather")
+    feather.write_feather(pa.table(dict(columns)), file)
 
 
 def write_hdf5(columns: Columns, file: Path) -> None:
@@ -58,9 +55,7 @@ def write_matlab(columns: Columns, file: Path) -> None:
 
 def write_excel(columns: Columns, file: Path) -> None:
     """One sheet."""
-    import openpyxl
-
-    book = openpyxl.Workbook(write_only=True)
+    book = import_module("openpyxl").Workbook(write_only=True)
     sheet = book.create_sheet("log")
     sheet.append(list(columns))
     for row in zip(*(values.tolist() for values in columns.values()), strict=True):
@@ -70,11 +65,9 @@ def write_excel(columns: Columns, file: Path) -> None:
 
 def write_mcap(columns: Columns, file: Path) -> None:
     """One topic, a message a row in JSON, in chunks packed by Zstandard."""
-    from mcap.writer import Writer
-
     headers = [header for header in columns if header != "time_s"]
     with open(file, "wb") as opened:
-        writer = Writer(opened)
+        writer = import_module("mcap.writer").Writer(opened)
         writer.start()
         schema = writer.register_schema("log", "jsonschema", b"{}")
         channel = writer.register_channel("/log", "json", schema)
@@ -101,16 +94,12 @@ def by_calamine(file: Path) -> Any:  # noqa: ANN401
 
 def by_pyarrow(file: Path) -> Any:  # noqa: ANN401
     """Parquet."""
-    import pyarrow.parquet
-
-    return pyarrow.parquet.read_table(file, use_threads=False)
+    return import_module("pyarrow.parquet").read_table(file, use_threads=False)
 
 
 def by_feather(file: Path) -> Any:  # noqa: ANN401
     """Arrow's file."""
-    import pyarrow.feather
-
-    return pyarrow.feather.read_table(file, use_threads=False)
+    return import_module("pyarrow.feather").read_table(file, use_threads=False)
 
 
 def by_h5py(file: Path) -> Any:  # noqa: ANN401
