@@ -89,7 +89,8 @@ def wanted(t: Array) -> Array:
     """(6, ...): u v w and the attitude of a flight that turns, climbs and slips."""
     return np.array([
         40 + 3 * np.sin(0.2 * t), 0.8 * np.sin(0.5 * t), 2 + np.sin(0.3 * t),
-        0.4 * np.sin(0.25 * t), 0.05 + 0.06 * np.sin(0.4 * t), 0.3 + 0.1 * t + 0.2 * np.sin(0.15 * t),
+        0.4 * np.sin(0.25 * t), 0.05 + 0.06 * np.sin(0.4 * t),
+        0.3 + 0.1 * t + 0.2 * np.sin(0.15 * t),
     ])  # fmt: skip
 
 
