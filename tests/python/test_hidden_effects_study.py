@@ -54,6 +54,6 @@ def test_a_small_study_runs_and_is_written_up(small, tmp_path):
     file = tmp_path / "study.md"
     write_up(rows, small, file)
     text = file.read_text(encoding="utf-8")
-    assert "| pitot-static | `wind[time]` | 100 / 100 |" in text
+    assert "| pitot-static | `wind[time]` | 100/100 |" in text
     assert "| white | 0 of 2 |" in text
     assert "<svg" in file.with_suffix(".svg").read_text(encoding="utf-8")

@@ -12,6 +12,7 @@ from sepcal.quantiles import upper_limit
 from studies.hidden_effects.experiments import StudyOptions
 
 Row = dict[str, Any]
+VERDICTS = ("unexplained", "effect_missing", "slow_change", "adequate")
 
 
 def write_up(rows: dict[str, list[Row]], options: StudyOptions, file: Path) -> None:
@@ -51,18 +52,24 @@ def _head(options: StudyOptions, picture: str) -> str:
     )
     return f"""# Hidden effects: what is found, and what isn't
 
-Written by
+This page says how often `diagnose` finds a physical effect that the model lacks, and how often it
+names one that isn't there. Read it to judge a verdict. This command writes the page
+([studies.md](studies.md) names the commit):
 
     {command}
 
-An effect is hidden in a simulated flight of two minutes, 400 to 1,200 rows, by a simulator that
-shares no code with the effects; the probe is calibrated without it and the calibration diagnosed.
-A size of s sigmas is a noncentrality of s^2: what the best fit without the effect leaves of a
-flight without noise, in variances of the noise. "First": the true effect comes first, or would do
-as well instead of what does. "Found": so, or among those found (Holm p < 0.05, held out). What
-changes as slowly as an instrument's errors wander, and by less, is no finding, however many sigmas
-it has: [how far that is](diagnosis.md#how-far-instruments-wander).
-Seeds count from {options.first_seed}.
+Every row counts simulated flights of two minutes, 400 to 1,200 rows. The simulator shares no code
+with the effects. It hides an effect in the flight, a fit without that effect calibrates the probe,
+and `diagnose` looks for what is missing. Seeds count from {options.first_seed}.
+
+- **Size.** For an effect of s sigmas, the best fit without it leaves a sum of squares of s^2 times
+  the noise variance, in a flight without noise.
+- **First.** The true effect ranks first, or `diagnose` names it as an equally good alternative.
+- **Found.** The true effect is among those found (p after Holm's correction below 0.05, confirmed
+  on rows held out), or is such an alternative.
+
+An effect that changes as slowly as instruments drift, and by less, doesn't count as found at any
+size ([how far they drift](diagnosis.md#how-far-instruments-wander)).
 
 ![share of flights against size]({picture})"""
 
@@ -77,7 +84,7 @@ def _power(rows: list[Row]) -> str:
 
     def cells(chosen: list[Row]) -> list[str]:
         at = [[row for row in chosen if row["sigmas"] == size] for size in sizes]
-        return [f"{_share(some, 'first')} / {_share(some, 'found')}" for some in at]
+        return [f"{_share(some, 'first')}/{_share(some, 'found')}" for some in at]
 
     body = [
         [probe, f"`{effect}`", *cells([r for r in rows if (r["probe"], r["effect"]) == kind])]
@@ -86,7 +93,8 @@ def _power(rows: list[Row]) -> str:
     ]
     body.append(["all", "", *cells(rows)])
     head = ["probe", "hidden", *(f"{size:g} sigmas" for size in sizes)]
-    return "## One effect: per cent first / found\n\n" + _table(head, body)
+    what = "Per cent of the flights in which the effect ranks first / is found, by its size."
+    return f"## One effect\n\n{what}\n\n{_table(head, body)}"
 
 
 def _share(rows: list[Row], key: str) -> str:
@@ -113,8 +121,9 @@ def _nulls(rows: list[Row]) -> str:
     limit = f"{100 * upper_limit(alarms, len(rows)):.1f} %"
     unexplained = _rate(rows, lambda row: row["verdict"] == "unexplained")
     body.append(["all", _rate(rows, is_alarm), limit, unexplained])
-    head = ["noise", "an effect is called found", "99 % upper limit of the rate", "unexplained"]
-    return "## Nothing hidden\n\n" + _table(head, body)
+    head = ["noise", "effect found", "99 % upper limit of its rate", "unexplained"]
+    what = "The model is complete, so every effect that is found is a false alarm."
+    return f"## Nothing hidden\n\n{what}\n\n{_table(head, body)}"
 
 
 def _others(rows: dict[str, list[Row]]) -> str:
@@ -124,32 +133,32 @@ def _others(rows: dict[str, list[Row]]) -> str:
 
     body = []
     for effects, chosen in by("pairs", "effects"):
-        what = f"two at 30 sigmas: {effects}"
+        what = f"two effects at 30 sigmas: {effects}"
         both = _rate(chosen, lambda row: row["both"] and not row["third"])
-        body.append([what, "both are added and no third", both])
+        body.append([what, "both added, no third", both])
     decoys = rows["decoys"]
     chosen_decoys = _rate(decoys, lambda row: row["decoys"] > 0)
-    body.append(["five decoy channels, nothing hidden", "a decoy is called found", chosen_decoys])
+    body.append(["five decoy channels, nothing hidden", "a decoy found", chosen_decoys])
     for effect, chosen in by("invisible", "effect"):
-        what = f"`{effect}`, which the model absorbs"
-        body.append([what, "it is called found", _rate(chosen, lambda r: r["status"] == "found")])
+        what = f"`{effect}`, absorbed by the model"
+        body.append([what, "found", _rate(chosen, lambda r: r["status"] == "found")])
         said = _rate(chosen, lambda row: row["status"] == "cannot_be_seen")
-        body.append([what, "said to be invisible", said])
+        body.append([what, "called invisible", said])
     proxy = rows["proxy"]
-    what = "`bias[current_a]` at 10 sigmas beside a voltage that sags with it"
+    what = "`bias[current_a]` at 10 sigmas, and a voltage that sags with it"
     said = _rate(proxy, lambda row: row["true_stands_first"])
-    body.append([what, "the current comes first or would do as well", said])
-    body.append([what, "the voltage is found", _rate(proxy, lambda row: row["proxy_found"])])
+    body.append([what, "the current ranks first or is as good", said])
+    body.append([what, "the voltage found", _rate(proxy, lambda row: row["proxy_found"])])
     for effect, chosen in by("unmeasured", "effect"):
+        counts = [sum(row["verdict"] == verdict for row in chosen) for verdict in VERDICTS]
         what = f"`{effect}` at 20 sigmas, its channel not logged"
-        for verdict in ("unexplained", "effect_missing", "adequate"):
-            count = sum(row["verdict"] == verdict for row in chosen)
-            body.append([what, verdict, f"{count} of {len(chosen)}"])
+        split = "/".join(map(str, counts))
+        body.append([what, f"verdict {'/'.join(VERDICTS)}", f"{split} of {len(chosen)}"])
     slow = rows["slow"]
-    what = "a wind that drifts by 2 m/s in 250 s, noise 0.15 m/s"
+    what = "a wind that changes by 2 m/s in 250 s, noise 0.15 m/s"
     body.append([what, "first", _rate(slow, lambda row: row["first"])])
     body.append([what, "found", _rate(slow, lambda row: row["found"])])
-    return "## Harder questions\n\n" + _table(["what is flown", "how often", "flights"], body)
+    return "## Harder questions\n\n" + _table(["flown", "outcome", "flights"], body)
 
 
 def _promises(rows: list[Row]) -> str:
@@ -162,13 +171,13 @@ def _promises(rows: list[Row]) -> str:
 
     judged = [row for row in kept if row["held_out_before"] is not None]
     body = [
-        ["the drop of the error is within 5 % of the promise", _rate(kept, near)],
+        ["the error falls by the predicted amount, within 5 % of it", _rate(kept, near)],
         [
-            "the error of rows held out falls",
+            "the error on rows held out falls",
             _rate(judged, lambda row: row["held_out_after"] < row["held_out_before"]),
         ],
         [
-            "the furthest parameter is nearer to the truth",
+            "the worst parameter, in standard errors, comes nearer to the truth",
             _rate(kept, lambda row: row["worst_error_after"] < row["worst_error_before"]),
         ],
         [
@@ -176,7 +185,8 @@ def _promises(rows: list[Row]) -> str:
             _rate(kept, lambda row: row["lag_one_after"] < row["lag_one_before"]),
         ],
     ]
-    return "## After `add`, at 10 sigmas\n\n" + _table(["", "flights"], body)
+    what = "`add` was run if the effect that ranked first was the hidden one."
+    return f"## After `add`, at 10 sigmas\n\n{what}\n\n{_table(['', 'flights'], body)}"
 
 
 def _draw(rows: list[Row], file: Path) -> None:
