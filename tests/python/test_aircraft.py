@@ -312,7 +312,7 @@ def test_bad_input_is_one_line(
     )
     refuse(
         lambda: sepcal.fit(sepcal.FlightPath(position=True), flight),
-        "of a flight a path has no position",
+        "a path with its position needs north_m, east_m and down_m, or lat_deg, lon_deg and",
     )
     refuse(lambda: sepcal.fit(sepcal.FlightPath(vane=(1, 0, 0)), flight), "give aircraft=...")
     light = sepcal.Aircraft(area=16.2, chord=1.49, span=10.9, mass=-1.0)

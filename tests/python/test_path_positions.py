@@ -234,3 +234,20 @@ def test_the_command_does_what_python_does(
     with (tmp_path / "out.csv").open() as lines:
         columns = next(lines).strip().split(",")
     assert {"x_m", "y_m", "z_m", "north_model_m"} <= set(columns)
+
+
+def test_fixes_slower_than_the_log_are_told_of(log: dict[str, Array]) -> None:
+    columns = dict(log)
+    slow = np.arange(ROWS) % 5 != 0
+    for name in ("north_m", "east_m", "down_m"):
+        columns[name] = np.where(slow, np.nan, log[name])
+    flight = sepcal.Flight(columns)
+    path = sepcal.FlightPath(position=True, substeps=4)
+    with pytest.raises(sepcal.Error, match="filter error takes the readings that are there"):
+        sepcal.fit(path, flight, fix=HELD, noise=NOISE)
+    given = dict(zip(INERTIAL, (1e-3,) * 3 + (1e-4,) * 3, strict=True))
+    fit = sepcal.fit(
+        path, flight, fix=HELD, noise=NOISE, method="filter-error", process_noise=given
+    )
+    for name, true in zip(FREE, [*BIASES, *WIND], strict=True):
+        assert abs(fit[name].value - true) < 4 * fit[name].standard_error, name

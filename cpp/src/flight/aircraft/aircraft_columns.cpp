@@ -190,11 +190,12 @@ probes::ModelQuantities quantities_of(AircraftModel model) {
   return {quantities, by_row ? probes::LooksAt::coefficients : probes::LooksAt::trajectory};
 }
 
-bool has_gaps(const Flight& logged, AircraftModel model, const LogChoice& log) {
+bool has_gaps(const Flight& logged, const AskedColumns& asked, const LogChoice& log) {
   if (log.drop_invalid) return false;
-  Flight flight = probes::read_for(quantities_of(model), logged, log).flight;
+  Flight flight = probes::read_for(quantities_of(asked.model), logged, log).flight;
   std::vector<std::string> notes;
-  return !bridge_outputs(flight, model == AircraftModel::path, notes).empty();
+  if (asked.position) logs::derive_position(flight, notes);
+  return !bridge_outputs(flight, asked.model == AircraftModel::path, notes).empty();
 }
 
 bool is_symmetric(AircraftModel model, const std::vector<AeroEquation>& equations) {
@@ -239,7 +240,12 @@ ProbeRecord prepare(const Flight& logged, const AskedColumns& asked, const LogCh
                           "thrust", "mass", "ps"}) {
     builder.offer({name});
   }
-  if (asked.position) builder.offer({"north", "east", "down"});
+  if (asked.position && !builder.offer({"north", "east", "down"})) {
+    throw Error(fmt::format(
+        "{}: a path with its position needs north_m, east_m and down_m, or lat_deg, lon_deg and "
+        "altitude_m, in every row; log them, or leave the position out",
+        flight.name()));
+  }
   if (!asked.position || !read.velocity_is_of_positions) builder.offer({"vn", "ve", "vd"});
   builder.offer({"pdot", "qdot", "rdot"});
   probes::offer_temperature(builder);

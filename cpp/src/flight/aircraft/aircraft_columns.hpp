@@ -34,7 +34,7 @@ struct AskedColumns {
 AskedColumns two_step_columns(const AircraftOptions& path);
 
 /// Whether prepare() would list gaps.
-bool has_gaps(const Flight& flight, AircraftModel model, const LogChoice& log);
+bool has_gaps(const Flight& flight, const AskedColumns& asked, const LogChoice& log);
 
 /// time [s]; ax ay az [m/s^2]; p q r [rad/s]; of an aircraft airspeed [m/s], alpha and beta [rad],
 /// rho [kg/m^3] or qbar [Pa]; and whatever else of the models' columns is logged. Throws Error as

@@ -185,7 +185,7 @@ ProbeRecord prepare_for(const Flight& flight, const AircraftOptions& options, La
   try {
     return prepare(flight, asked, log);
   } catch (const Error& error) {
-    if (!has_state || !has_gaps(flight, options.model, log)) throw;
+    if (!has_state || !has_gaps(flight, asked, log)) throw;
     throw_within("", error, "; filter error takes the readings that are there");
   }
 }
