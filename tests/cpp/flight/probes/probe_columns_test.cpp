@@ -157,7 +157,10 @@ TEST_CASE("missing columns, unknown units, quantities given twice") {
   CHECK(refuse(make_five_hole_log().rename("roll_rad", "roll_grad").build()) ==
         "log: column 'roll_grad' has no known unit; roll may be logged as: roll_rad, roll_deg; "
         "map roll_rad=roll_grad reads it as the first");
-  CHECK(refuse(make_five_hole_log().rename("roll_rad", "roll").build())
+  Log bare = make_five_hole_log().rename("roll_rad", "roll");  // beyond a turn in radians
+  CHECK(mentions({refuse(bare.build())}, "map roll_deg=roll reads it in deg; known too: rad"));
+  bare["roll"].assign(10, 0.3);
+  CHECK(refuse(bare.build())
             .starts_with("log: column 'roll_rad' is missing (roll_deg would do as well); 'roll' "
                          "says no unit that is known: map roll_rad=roll reads it in rad; known "
                          "too: deg; a quaternion from body to north-east-down would do as well: "));
