@@ -198,37 +198,6 @@ std::string map_pair(std::string_view accepted, std::string_view header) {
   return base::in_shell(fmt::format("{}={}", accepted, header));
 }
 
-Message ask_for_near_miss(std::string_view quantity, UnitKind kind,
-                          std::span<const std::string> others) {
-  const std::vector<NearMiss> near = find_near_misses(quantity, kind, others);
-  if (near.size() == 1) {
-    return {fmt::format("; did you mean '{}'? ", near[0].header), Option{"map"},
-            fmt::format(" {} reads it so", map_pair(near[0].accepted, near[0].header))};
-  }
-  if (near.size() > 1) {
-    return {fmt::format("; '{}' and '{}' could both be it: ", near[0].header, near[1].header),
-            Option{"map"}, fmt::format(" {} decides", map_pair(near[0].accepted, near[0].header))};
-  }
-  if (const std::string* header = find_without_unit(quantity, others)) {
-    const auto units = known_units(kind);
-    if (units.empty()) return {};
-    const std::string accepted = fmt::format("{}_{}", quantity, units.front().suffix);
-    if (header->find_first_of("([") != std::string::npos) {
-      std::vector<std::string_view> all;
-      for (const Unit& unit : units) all.push_back(unit.suffix);
-      return {fmt::format("; '{}' is in a unit that is not known: convert it to one of {}", *header,
-                          fmt::join(all, ", "))};
-    }
-    std::vector<std::string_view> rest;
-    for (const Unit& unit : units.subspan(1)) rest.push_back(unit.suffix);
-    return {fmt::format("; '{}' says no unit that is known: ", *header), Option{"map"},
-            fmt::format(" {} reads it in {}{}", map_pair(accepted, *header), units.front().suffix,
-                        rest.empty() ? "" : fmt::format("; known too: {}", fmt::join(rest, ", ")))};
-  }
-  if (quantity == "time") return ask_for_time_of_week(others);
-  return {};
-}
-
 std::optional<MappedColumn> find_near_column(std::string_view quantity, UnitKind kind,
                                              std::span<const std::string> others) {
   const std::vector<NearMiss> near = find_near_misses(quantity, kind, others);
@@ -305,6 +274,28 @@ Message ask_for_columns(std::span<const MappedColumn> columns) {
   }
   return {std::move(question), Option{"map"},
           fmt::format(" {} {}", base::in_shell(fmt::format("{}", fmt::join(pairs, ","))), reads)};
+}
+
+Message ask_for_near_miss(std::string_view quantity, UnitKind kind,
+                          std::span<const std::string> others) {
+  if (const auto column = find_near_column(quantity, kind, others)) {
+    return ask_for_columns({&*column, 1});
+  }
+  const std::vector<NearMiss> near = find_near_misses(quantity, kind, others);
+  if (near.size() > 1) {
+    return {fmt::format("; '{}' and '{}' could both be it: ", near[0].header, near[1].header),
+            Option{"map"}, fmt::format(" {} decides", map_pair(near[0].accepted, near[0].header))};
+  }
+  if (const std::string* header = find_without_unit(quantity, others)) {
+    const auto units = known_units(kind);
+    if (units.empty()) return {};
+    std::vector<std::string_view> all;
+    for (const Unit& unit : units) all.push_back(unit.suffix);
+    return {fmt::format("; '{}' is in a unit that is not known: convert it to one of {}", *header,
+                        fmt::join(all, ", "))};
+  }
+  if (quantity == "time") return ask_for_time_of_week(others);
+  return {};
 }
 
 Message around(std::string before, Message hint, std::string after) {
