@@ -74,7 +74,8 @@ Fit fit_restricted(const BlockModel& model, const Record& record, FitOptions opt
   Fit best = fit_at();
   double highest = restricted_likelihood(best);
   // Each in turn, up and down by a factor, which shrinks where neither helps.
-  for (double factor = 4.0; factor > 1.15; factor = std::sqrt(factor)) {
+  double factor = 4.0;
+  while (factor > 1.15) {
     for (bool moved = true; moved;) {
       moved = false;
       for (Process& process : processes) {
@@ -93,6 +94,7 @@ Fit fit_restricted(const BlockModel& model, const Record& record, FitOptions opt
         }
       }
     }
+    factor = std::sqrt(factor);
   }
   return best;
 }
