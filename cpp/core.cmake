@@ -18,7 +18,7 @@ target_include_directories(
                         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_link_libraries(sepcal_core INTERFACE Eigen3::Eigen)
 target_compile_features(sepcal_core INTERFACE cxx_std_20)
-# A program for another instruction set must free what the library allocates (sepcal/eigen.hpp).
+# A program for another instruction set must free what the library allocates (sepcal/detail/eigen.hpp).
 set(core_definitions EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=64)
 target_compile_definitions(sepcal_core INTERFACE ${core_definitions})
 set_target_properties(sepcal_core PROPERTIES EXPORT_NAME core)

@@ -73,7 +73,8 @@ class Sepcal(ConanFile):
             self.requires("xsimd/[>=8.1 <14]")
         if self.options.flight:
             self.requires("nlohmann_json/[>=3.11 <4]")
-            self.requires("openssl/[>=3 <4]")
+            self.requires("zlib/[>=1.2 <2]")
+            self.requires("zstd/[>=1.5 <2]")
 
     def generate(self) -> None:
         """As scripts/setup configures, of what the options say."""
@@ -117,7 +118,7 @@ class Sepcal(ConanFile):
             self._archive("sepcal_states", "sepcal")
         if self.options.flight:
             json = "nlohmann_json::nlohmann_json"
-            self._archive("sepcal_flight", "sepcal", json, "openssl::crypto")
+            self._archive("sepcal_flight", "sepcal", json, "zlib::zlib", "zstd::zstd")
             self._archive("sepcal_simulation", "sepcal_flight")
             self._archive("sepcal_aircraft", "sepcal_states", "sepcal_simulation")
 

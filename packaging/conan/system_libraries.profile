@@ -12,4 +12,5 @@ nlopt/2.7.1
 fmt/9.1.0
 xsimd/8.1.0
 nlohmann_json/3.11.2
-openssl/3.0.19
+zlib/1.2.13
+zstd/1.5.4

@@ -3,7 +3,7 @@
 # shellcheck shell=bash
 
 # Where find_package finds nothing that the core can do without.
-others=(Ceres glog NLopt Threads fmt nlohmann_json OpenSSL ZLIB zstd)
+others=(Ceres glog NLopt Threads fmt nlohmann_json ZLIB zstd)
 without_others=("${others[@]/#/-DCMAKE_DISABLE_FIND_PACKAGE_}")
 without_others=("${without_others[@]/%/=ON}")
 
@@ -56,7 +56,7 @@ consume_core() {
 read_headers() {
   (cd "$1/include" && find . -name '*.hpp' -printf '#include "%P"\n') >"$2/all.cpp"
   compile "$1" sepcal-core -fsyntax-only -fno-exceptions -fno-rtti -MD -MF "$2/all.d" "$2/all.cpp"
-  if grep -E '/(ceres|glog|nlopt.hpp|fmt|nlohmann|openssl|xsimd)/' "$2/all.d"; then
+  if grep -E '/(ceres|glog|nlopt.hpp|fmt|nlohmann|xsimd)/' "$2/all.d"; then
     die "a header of the core includes what is not Eigen's"
   fi
 }

@@ -5,7 +5,6 @@
 #include <ceres/iteration_callback.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
-#include <glog/logging.h>
 
 #include <cmath>
 #include <exception>
@@ -145,7 +144,5 @@ Descent estimation::minimise(Objective& objective, const VectorXd& start, const 
   descent.iterations = static_cast<int>(summary.iterations.size());
   return descent;
 }
-
-void silence_solver_log() { FLAGS_minloglevel = google::GLOG_FATAL; }
 
 }  // namespace sepcal
