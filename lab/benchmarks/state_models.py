@@ -4,13 +4,16 @@
     PYTHONPATH=build/python:lab python -m benchmarks.state_models [CASE ...]
 
 prints seconds of CPU, how a fit ended, and how far its answer is from that of another build
-(--answers there, --against here).
+(--answers there, --against here). --instructions counts instructions by valgrind instead, as many
+on a busy machine as on a quiet one.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import re
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -226,15 +229,34 @@ def distance(now: dict[str, Any], before: dict[str, Any]) -> float:
     return largest
 
 
+def count(case: str, *options: str) -> int:
+    """Instructions of a process that runs a case."""
+    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", sys.executable]
+    command += ["-m", "benchmarks.state_models", case, *options]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stderr
+    found = re.search(r"Collected : (\d+)", said)
+    if not found:
+        raise RuntimeError(f"valgrind counted nothing: {said}")
+    return int(found[1])
+
+
 def main() -> int:
     """Runs the cases named, or all."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("case", nargs="*", help=", ".join(CASES))
     parser.add_argument("--answers", type=Path, help="a file that answers are written to")
     parser.add_argument("--against", type=Path, help="such a file of another build")
+    parser.add_argument("--instructions", action="store_true", help="50 times as long")
+    parser.add_argument("--prepare", action="store_true", help="stop before what is measured")
     asked = parser.parse_args()
     for name in asked.case or CASES:
+        if asked.instructions:
+            millions = (count(name) - count(name, "--prepare")) / 1e6
+            print(f"{name:29} {millions:12,.0f} million instructions", flush=True)
+            continue
         work = CASES[name]()
+        if asked.prepare:
+            continue
         begin = time.process_time()
         found = work()
         told = {"seconds": time.process_time() - begin} | numbers_of(found)
