@@ -11,11 +11,20 @@ debian_sources() {
     sed 's|^|deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] |'
 }
 
-# write_apt_conf FOLDER ARCHITECTURE: FOLDER/apt.conf makes an apt of its own, with FOLDER for all
-# that it keeps. Its dpkg has no package yet, so that it downloads everything that is depended on.
+# debian_suite KIND SUITE: a line of a sources.list for another release of Debian from this machine's mirror,
+# of its packages (deb) or their sources (deb-src).
+debian_suite() {
+  debian_sources | awk -v kind="$1" -v suite="$2" \
+    '$3 !~ /security/ { print kind, $2, $3, suite, "main"; found = 1; exit } END { exit !found }' ||
+    die "apt knows no mirror of Debian; run apt-get update first"
+}
+
+# write_apt_conf FOLDER ARCHITECTURE [LINE]...: FOLDER/apt.conf makes an apt of its own, with FOLDER for
+# all that it keeps and these lines for a sources.list, or this machine's. Its dpkg has no package yet, so
+# that it downloads everything that is depended on.
 write_apt_conf() {
   mkdir -p "$1"/{lists,cache/archives/partial,etc}
-  debian_sources >"$1/sources.list"
+  if (($# > 2)); then printf '%s\n' "${@:3}"; else debian_sources; fi >"$1/sources.list"
   [[ -s $1/sources.list ]] || die "apt knows no Debian repository; run apt-get update first"
   : >"$1/status"
   cat >"$1/apt.conf" <<CONF
@@ -33,10 +42,18 @@ Debug::NoLocking "true";
 CONF
 }
 
+# unpack ROOT PACKAGE...
+unpack() {
+  local package
+  for package in "${@:2}"; do
+    dpkg-deb --fsys-tarfile "$package" | tar --extract --keep-directory-symlink --directory "$1"
+  done
+}
+
 # make_sysroot FOLDER ARCHITECTURE FILE: FOLDER/root with the packages that FILE names; nothing is
 # done where that list has not changed since.
 make_sysroot() {
-  local folder=$1 root=$1/root names package library
+  local folder=$1 root=$1/root names library
   mapfile -t names < <(grep -v '^#' "$3")
   if cmp -s "$3" "$folder/unpacked"; then return; fi
   rm -rf "$folder"
@@ -48,16 +65,14 @@ make_sysroot() {
   unset APT_CONFIG
   mkdir -p "$root"/usr/{bin,lib,sbin}
   ln -s usr/bin usr/lib usr/sbin "$root"
-  for package in "$folder"/cache/archives/*.deb; do
-    dpkg-deb --fsys-tarfile "$package" | tar --extract --keep-directory-symlink --directory "$root"
-  done
+  unpack "$root" "$folder"/cache/archives/*.deb
   # What update-alternatives does where packages are installed.
-  for package in "$root"/usr/lib/*/{blas,lapack}; do
-    for library in "$package"/*.so*; do
-      ln -sf "${package##*/}/${library##*/}" "${package%/*}/${library##*/}"
+  for folder in "$root"/usr/lib/*/{blas,lapack}; do
+    for library in "$folder"/*.so*; do
+      ln -sf "${folder##*/}/${library##*/}" "${folder%/*}/${library##*/}"
     done
   done
   # Ceres names libraries by paths that are right where it is installed.
   sed -i "s|;/usr/lib/|;$root/usr/lib/|g" "$root"/usr/lib/*/cmake/Ceres/CeresTargets.cmake
-  cp "$3" "$folder/unpacked"
+  cp "$3" "$1/unpacked"
 }

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Wheels tried where nothing is: roots of Debian and Ubuntu with their Python, no compiler, no library of
+# sepcal's. Needs root, for chroot.
+# shellcheck shell=bash
+
+# Suite and its Python.
+bare_roots=("bookworm 3.11" "trixie 3.13" "noble 3.12")
+
+# try_wheels WHEEL...: each in the roots whose Python it is for.
+try_wheels() {
+  local line suite python wheel tried=0
+  install_packages scripts/apt-packages-wheel.txt
+  make_wheel_tools
+  for line in "${bare_roots[@]}"; do
+    read -r suite python <<<"$line"
+    for wheel; do
+      [[ $wheel == *-cp${python/./}-*_$(uname -m).whl ]] || continue
+      make_bare_root "$suite"
+      try_wheel "$suite" "$python" "$wheel"
+      tried=$((tried + 1))
+    done
+  done
+  ((tried > 0)) || die "none of these wheels is for Python 3.11, 3.12 or 3.13 on $(uname -m)"
+}
+
+# make_bare_root SUITE: build-wheel/bare/SUITE.tar, made once.
+make_bare_root() {
+  local tar=build-wheel/bare/$1.tar root
+  if [[ -f $tar ]]; then return; fi
+  say "making a bare $1"
+  mkdir -p build-wheel/bare
+  root=$(mktemp -d build-wheel/bare/XXXX)
+  # Debian has no key of Ubuntu's: a root to try things in, never to build from.
+  local options=(--force-check-gpg) recipe=()
+  if [[ $1 == noble ]]; then # which is younger than Debian 12's debootstrap
+    options=(--no-check-gpg "--components=main,universe") recipe=("" /usr/share/debootstrap/scripts/gutsy)
+  fi
+  quietly debootstrap debootstrap --variant=minbase --include=python3-venv "${options[@]}" "$1" "$root" \
+    "${recipe[@]}"
+  tar --create --file "$tar.part" --directory "$root" --exclude=./var/cache/apt --exclude=./var/lib/apt/lists .
+  mv "$tar.part" "$tar"
+  rm -rf "$root"
+}
+
+# try_wheel SUITE PYTHON WHEEL: from nothing to a calibration, a report and a log.
+try_wheel() {
+  local root
+  root=$(mktemp -d "${TMPDIR:-/tmp}/bare.XXXX")
+  tar --extract --file "build-wheel/bare/$1.tar" --directory "$root"
+  mkdir "$root/wheels"
+  cp "$3" "$root/wheels"
+  quietly "pip download" build-wheel/tools/bin/python -m pip download --disable-pip-version-check --quiet \
+    --only-binary :all: --python-version "$2" --dest "$root/wheels" numpy plotly pyulog
+  say "$1, Python $2: $(basename "$3")"
+  cp scripts/parts/bare_trial.sh "$root/trial.sh"
+  mount -t proc proc "$root/proc" # by which the loader finds a program's folder
+  local status=0
+  chroot "$root" env -i PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin HOME=/root sh -e /trial.sh || status=$?
+  umount "$root/proc"
+  ((status == 0)) || die "the wheel failed in $1; its root is $root"
+  rm -rf "$root"
+}

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Debian 12's g++ for wheels: against the glibc of an older Debian in SEPCAL_ROOT, with its own standard
+# library linked in. What that asks of a newer glibc is in older_glibc.c, compiled to SEPCAL_OLDER_GLIBC.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR ${SEPCAL_PROCESSOR})
+set(triplet ${SEPCAL_PROCESSOR}-linux-gnu)
+set(CMAKE_LIBRARY_ARCHITECTURE ${triplet})
+set(CMAKE_C_COMPILER ${triplet}-gcc-12)
+set(CMAKE_CXX_COMPILER ${triplet}-g++-12)
+set(CMAKE_OBJCOPY ${triplet}-objcopy)
+set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES SEPCAL_PROCESSOR SEPCAL_ROOT SEPCAL_OLDER_GLIBC)
+set(CMAKE_SYSROOT ${SEPCAL_ROOT})
+set(CMAKE_C_FLAGS_INIT "-ffile-prefix-map=${SEPCAL_ROOT}=")
+set(CMAKE_CXX_FLAGS_INIT "-ffile-prefix-map=${SEPCAL_ROOT}= -DEIGEN_MPL2_ONLY")
+# The compiler would look for glibc beside itself before it looks in the root.
+set(libraries ${SEPCAL_ROOT}/usr/lib/${triplet})
+set(link "-B${libraries} -L${libraries} -static-libstdc++ -Wl,--no-as-needed -lpthread -lm -Wl,--as-needed")
+foreach(wrapped exp exp2 log log2 pow pthread_cond_clockwait)
+  string(APPEND link " -Wl,--wrap=${wrapped}")
+endforeach()
+foreach(kind EXE SHARED MODULE)
+  set(CMAKE_${kind}_LINKER_FLAGS_INIT "${SEPCAL_OLDER_GLIBC} ${link} -Wl,--exclude-libs,ALL")
+endforeach()
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
