@@ -31,6 +31,7 @@ write_apt_conf() {
 APT::Architecture "$2";
 APT::Architectures "$2";
 APT::Install-Recommends "false";
+Acquire::Check-Valid-Until "false";
 APT::Sandbox::User "$(id -un)";
 Dir::Cache "$1/cache";
 Dir::Etc::sourcelist "$1/sources.list";
