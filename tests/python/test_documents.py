@@ -175,7 +175,7 @@ def test_every_option_in_the_documents_is_in_the_help(options_in_help):
 
 
 def test_every_option_is_explained(options_in_help):
-    explained = option_names(read("commands.md")) | option_names(read("aircraft.md"))
+    explained = option_names(read("commands.md")) | option_names(read("aircraft-reference.md"))
     assert options_in_help - {"--help", "--output"} <= explained
 
 
@@ -192,7 +192,7 @@ def test_every_verb_in_the_documents_is_in_the_help():
     assert set(listed) == set(VERBS) <= explained
     listed = re.findall(r"^  ([a-z][a-z-]*)  ", verbs["sepcal-aircraft"], re.M)
     assert set(listed) == set(AIRCRAFT)
-    assert set(AIRCRAFT) <= set(re.findall(r"^\| `([a-z-]+)", read("aircraft.md"), re.M))
+    assert set(AIRCRAFT) <= set(re.findall(r"^\| `([a-z-]+)", read("aircraft-reference.md"), re.M))
 
 
 def test_scripts_and_files_in_typed_commands_exist():
