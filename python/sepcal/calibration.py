@@ -332,7 +332,7 @@ class Calibration(Fit):
                 of what is measured, as SIDPAC has it, or all of it.
             rule: What decides: all that a verdict asks, or stepwise regression's partial F, one
                 candidate at a time from 20 on, residuals taken for white.
-            error_budget: How far each error of an instrument wanders at most, in its unit, where
+            error_budget: How far each error of an instrument drifts at most, in its unit, where
                 you know it, by the names that `Diagnosis.error_budget` has.
             within: Answers within so many seconds [no limit]; `Diagnosis.left_undone` says what
                 there was no time for.
