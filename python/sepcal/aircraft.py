@@ -17,10 +17,10 @@ Equations = Mapping[str, Sequence[str]]
 
 
 class AircraftModel(Protocol):
-    """What fit() and two_step() lay along a flight: Aero, RigidAircraft, FlightPath."""
+    """A model that fit() and two_step() take: Aero, RigidAircraft, FlightPath."""
 
     def _aircraft_options(self) -> dict[str, Any]:
-        """Of sepcal._states.Options, all but those of the fit."""
+        """The fields of sepcal._states.Options but those of the fit."""
 
 
 @checked
@@ -150,7 +150,7 @@ class RigidAircraft:
 
 
 def standard_regressors(coefficient: str) -> list[str]:
-    """Of one of CX CY CZ Cl Cm Cn, S 6.8 to 6.13. Raises Error for another name."""
+    """The regressors of CX, CY, CZ, Cl, Cm or Cn, S 6.8 to 6.13. Raises Error for another name."""
     return list(states_module().standard_regressors(coefficient))
 
 

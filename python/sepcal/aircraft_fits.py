@@ -107,12 +107,12 @@ class AircraftFit(Fit):
 
     @property
     def notes(self) -> list[str]:
-        """What was dropped or assumed, one line each, for people."""
+        """Notes on what was dropped or assumed, one line each, for people."""
         return self.core.notes
 
     @property
     def warning(self) -> str:
-        """What is not in the intervals; empty where nothing is known."""
+        """Errors that the intervals leave out; empty if none is known."""
         return self.core.warning
 
     def _summary(self) -> str:
@@ -151,7 +151,7 @@ class AircraftFit(Fit):
     def residuals(
         self, flight: AnyFlight | Sequence[AnyFlight] | None = None
     ) -> dict[str, Array | list[str]]:
-        """What the model leaves on a flight, row by row, as `sepcal aircraft residuals` writes it.
+        """The residuals on a flight, row by row, as `sepcal aircraft residuals` writes them.
 
         Arrays by header, of shape (rows,), rows being the flight's: time_s, and of each output
         what was measured and modelled and the residual in its unit, ax_residual_mps2, and
@@ -377,7 +377,7 @@ class AircraftFit(Fit):
     def apply(
         self, flight: AnyFlight | None = None, *, process_noise: Mapping[str, float] | None = None
     ) -> dict[str, Array]:
-        """What was flown, by header, each of shape (rows,).
+        """The corrected readings and modelled outputs by header, each of shape (rows,).
 
         Of every model the outputs as modelled, `alpha_model_rad`. Of a path also readings
         corrected, `ax_cal_mps2`, `alpha_cal_rad`, the velocity through the air, `u_mps`, and with
@@ -588,7 +588,7 @@ class AircraftFit(Fit):
         report(self, file, flight, **options)
 
     def _units_on(self, flight: Flight) -> dict[str, str]:
-        """Of the parameters and, where the flight has all outputs, of these."""
+        """Units of the parameters and, if the flight has all outputs, of these."""
         known = {name: parameter.unit for name, parameter in self.parameters.items()}
         try:
             outputs = self.core.compare(flight._core).overall
@@ -685,7 +685,7 @@ class TwoSteps(Page):
 
     @property
     def text(self) -> str:
-        """What print() shows: the app's page."""
+        """The app's page, as print() shows it."""
         return self._page
 
     def to_json(self) -> str:
@@ -818,7 +818,7 @@ def _seconds(flight: Flight) -> Array | None:
 
 
 def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> AircraftFit:
-    """Of a flight path or an aircraft; fit() calls it."""
+    """Fits a flight path or an aircraft; fit() calls it."""
     core = states_module().fit(flight._core, _core_options(model, options))
     return AircraftFit(core, flight)
 
@@ -826,7 +826,7 @@ def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> Air
 def fit_flights(
     model: AircraftModel, flights: Sequence[AnyFlight], options: FitOptions
 ) -> AircraftFit:
-    """Of several flights together, each with initial states of its own; fit_jointly() calls it."""
+    """Fits several flights together, each with its own initial states; fit_jointly() calls it."""
     given = [to_flight(one, "fit_jointly(model, [", "", options)._core for one in flights]
     laid = _core_options(model, options)
     joined = Flight._of(states_module().join(given, to_core(options), None))

@@ -81,7 +81,7 @@ class Calibration(Fit):
 
     @property
     def derived(self) -> dict[str, _core.Derived]:
-        """What follows: of a Pitot-static tube lambda_va and b_va, which correct the reading."""
+        """Derived quantities: a Pitot-static tube's lambda_va, b_va, which correct the reading."""
         return self.core.derived
 
     def __getitem__(self, name: str) -> _core.Parameter:
@@ -102,7 +102,7 @@ class Calibration(Fit):
 
     @property
     def departures(self) -> dict[str, _core.FlightDeparture]:
-        """Of a joint fit: whether a flight, by its label, agrees with the others."""
+        """For a joint fit: whether a flight, by its label, agrees with the others."""
         return {one.flight: one for one in self.core.departures}
 
     def departed(self, level: float = 0.01) -> list[str]:
@@ -123,7 +123,7 @@ class Calibration(Fit):
 
     @property
     def notes(self) -> list[str]:
-        """What was dropped or ignored, one line each, for people."""
+        """Notes on what was dropped or ignored, one line each, for people."""
         return self.core.notes
 
     def _summary(self) -> str:
@@ -171,7 +171,7 @@ class Calibration(Fit):
     def residuals(
         self, flight: AnyFlight | Sequence[AnyFlight] | None = None
     ) -> dict[str, Array | list[str]]:
-        """What the model leaves on a flight, row by row, as `sepcal mag residuals` writes it.
+        """The residuals on a flight, row by row, as `sepcal mag residuals` writes them.
 
         Arrays by header, of shape (rows,), rows being the flight's: time_s, and of each output
         what was measured and modelled and the residual in its unit, mx_residual_ut, and

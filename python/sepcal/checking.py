@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a log is, before anything is fitted, and what that does to a calibration from it."""
+"""Describes a log before anything is fitted, and what each problem does to a calibration."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def check(
     delimiter: str = "",
     decimal: str = "",
 ) -> FlightCheck:
-    """What a log is, column by column, and what that does to a calibration from it.
+    """Describes a log, column by column, and what each problem does to a calibration.
 
     Nothing is fitted, and a log that a fit would refuse is described all the same.
 

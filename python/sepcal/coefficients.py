@@ -15,7 +15,7 @@ from sepcal.states_module import states_module
 
 @dataclass(frozen=True)
 class AeroCoefficients:
-    """What aero_coefficients() found.
+    """The result of aero_coefficients().
 
     Attributes:
         columns: {name: (N,)}: those given, airspeed, alpha and beta moved to the centre of gravity,

@@ -151,7 +151,7 @@ class DesignTrial:
         )
 
     def together(self, rngs: Sequence[Generator]) -> list[Estimates | None]:
-        """What a study keeps of the trial of each generator; None where it fails.
+        """The record of each generator's trial that a study keeps; None where it fails.
 
         Example:
             >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}

@@ -122,7 +122,7 @@ class _Task(Generic[Item]):
 
 
 class _Work(Generic[Item]):
-    """What is to be run: first what was lost, then what is new, at last what is suspect, alone."""
+    """Items to run: first those that were lost, then new ones, last suspect ones, each alone."""
 
     def __init__(self, items: Iterable[Item], batch: int, attempts: int) -> None:
         self.attempts = attempts

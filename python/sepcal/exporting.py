@@ -17,7 +17,7 @@ Target = Literal["c", "cpp", "px4", "ardupilot"]
 
 
 class Exported(_core.Exported):
-    """What was written, and what the vehicle's correction lacks; print() shows the page.
+    """The result of export(): what was written and what the vehicle's correction lacks.
 
     Example:
         >>> flight = sepcal.datasets.load("magnetometer")

@@ -127,7 +127,7 @@ class Flight(Mapping[str, Array]):
 
     @property
     def sha256(self) -> str:
-        """Of the file's bytes, 64 hexadecimal digits; empty for arrays."""
+        """SHA-256 of the file's bytes, 64 hexadecimal digits; empty for arrays."""
         return self._core.sha256
 
     @property
@@ -142,7 +142,7 @@ class Flight(Mapping[str, Array]):
 
     @property
     def notes(self) -> list[str]:
-        """What its reader decided about the file, one line each."""
+        """The decisions of the file's reader, one line each."""
         return self._core.notes
 
     @property
@@ -407,7 +407,7 @@ def to_flight_of(fitted: Fitted, flight: object, call: str) -> Flight:
 
 
 def kind_of(model: object) -> str:
-    """What files are read for, by a model or its name: MAGNETIC, AIR or nothing in particular."""
+    """The kind of reading that a model, or its name, needs: MAGNETIC, AIR or none."""
     return KINDS.get(model if isinstance(model, str) else type(model).__name__, "")
 
 

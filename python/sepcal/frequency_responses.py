@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class FrequencyResponse:
-    """What frequency_response() found; M frequencies, n inputs.
+    """The result of frequency_response(); M frequencies, n inputs.
 
     Attributes:
         inputs: Headers, n.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an aircraft is to its equations of motion."""
+"""An aircraft's geometry and mass, as its equations of motion need them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from sepcal.whole_files import name_of
 @checked
 @dataclass(frozen=True, kw_only=True)
 class Aircraft:
-    """What an aircraft is to its equations of motion.
+    """An aircraft's geometry and mass, as its equations of motion need them.
 
     Positions are in body axes, forward, right, down, from any one point of the aircraft.
 

@@ -39,7 +39,7 @@ Sample = Callable[
 
 @dataclass(frozen=True)
 class LeastSquares:
-    """What iterate_least_squares() found.
+    """The result of iterate_least_squares().
 
     Attributes:
         status: "not_converged": iterations ended by their cap, or no step made the cost fall.
@@ -234,7 +234,7 @@ class RecursiveLeastSquares:
 
     @property
     def covariance(self) -> Array:
-        """Of p, (n, n), where W is the noise's covariance; NaN where a parameter is open."""
+        """The covariance of p, (n, n), if W is the noise's; NaN where a parameter is open."""
         found = self._core.covariance
         return found if self.determined else np.full_like(found, np.nan)
 

@@ -148,7 +148,7 @@ class _Visits:
 
 
 def _lose(question: Question, error: BaseException) -> object:
-    """What stands for a flight whose worker died of it, time and again."""
+    """Stands for a flight that killed its worker at every attempt."""
     reason = f"its worker dies of it, or is killed ({describe(error)})"
     if question.kind == "start":
         return unusable(reason), ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a joint fit of many flights says. Undefined numbers are NaN."""
+"""The result of a joint fit of many flights. Undefined numbers are NaN."""
 
 from __future__ import annotations
 

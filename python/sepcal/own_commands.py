@@ -170,7 +170,7 @@ def read_numbers(option: str, texts: Sequence[str], form: str) -> dict[str, floa
 
 
 def _options(given: argparse.Namespace) -> dict[str, Any]:
-    """Of what was typed."""
+    """The options that were typed."""
     options = {}
     for row in ROWS.values():
         value = getattr(given, row.name, None)

@@ -131,7 +131,7 @@ class Effect:
 
 
 class _Record(Mapping[str, Array]):
-    """What an effect's function sees."""
+    """The arguments that an effect's function gets."""
 
     def __init__(self, columns: dict[str, Array]) -> None:
         self._columns = columns

@@ -95,7 +95,7 @@ class AlonsoShusterFit(_Named, _core.AlonsoShusterFit):
 
 
 class TwoStepProblem(Protocol):
-    """What fit_haupt_kasdin() takes: states in which the measurements are linear.
+    """The interface of a two-step problem: states in which the measurements are linear.
 
         >>> class Tone:  # z = (1 + a) cos(eta + b) + c
         ...     inputs = {"eta": "rad"}

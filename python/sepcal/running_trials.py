@@ -171,7 +171,7 @@ def _to_indices(trials: int | Iterable[int]) -> range | list[int]:
 
 @contextmanager
 def _progress_of(progress: bool | Literal["tqdm"] | Progress | None) -> Iterator[Progress]:
-    """What to call after each trial."""
+    """The function to call after each trial."""
     if callable(progress):
         yield progress
         return

@@ -59,7 +59,7 @@ class Track(_core.Track):
         return np.asarray(self.estimates[:, self._place(name)])
 
     def standard_deviation(self, name: str) -> Array:
-        """Of one estimate against time, (M,).
+        """The standard deviation of one estimate against time, (M,).
 
         Example:
             >>> flight = sepcal.datasets.load("aircraft")

@@ -141,7 +141,7 @@ def make(name: str) -> tuple[str, dict[str, Any]]:
 
 
 def _read(true: Array, step: float, wander: float, rng: Generator) -> Array:
-    """What an instrument says whose zero wanders and whose readings lie on steps."""
+    """The readings of an instrument whose zero drifts and that has a resolution."""
     walk = np.cumsum(rng.standard_normal(true.size)) / np.sqrt(true.size)
     read: Array = np.round((true + wander * walk) / step) * step
     return read

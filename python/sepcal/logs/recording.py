@@ -21,7 +21,7 @@ MAGNETOMETER, TUBE = "magnetometer", "pitot-static tube"
 
 @dataclass(frozen=True)
 class Channel:
-    """What one message of a log said, sample by sample.
+    """The readings of one message of a log, sample by sample.
 
     Attributes:
         source: The fields it is of, "ATT.Roll, Pitch, Yaw".

@@ -126,7 +126,7 @@ def draw_ranking(names: Sequence[str], drops: Array, gains: Array, found: Sequen
 
 
 def draw_correlation(names: Sequence[str], correlation: Array) -> Figure:
-    """Of estimates, (n, n): blue together, red against one another."""
+    """Draws the correlation of estimates, (n, n): blue if positive, red if negative."""
     places = list(range(len(names)))
     ticks = [in_figure(words.abbreviate(name, 28)) for name in names]
     longest = max(map(len, ticks), default=0)

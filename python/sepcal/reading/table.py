@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a reader found: columns of one length by header, and what it decided about them."""
+"""A reader's result: columns of one length by header, and what it decided about them."""
 
 from __future__ import annotations
 

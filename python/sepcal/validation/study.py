@@ -46,7 +46,7 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Validation:
-    """What came of validate(). `print(validation)` shows the table.
+    """The result of validate(). `print(validation)` shows the table.
 
     T trials that both fitted, n parameters, linear, then nonlinear. sepcal begins with its stage
     one, SciPy at the truth.
