@@ -120,7 +120,7 @@ def check(
     Args:
         model: A probe, a FlightPath, Aero or RigidAircraft, or a model of your own, as for the fit.
         flight: The log, or what read() makes a flight of.
-        map: Of what a fit is to take of the log, as its options: columns under other headers.
+        map: How a fit is to read the log, as its options: columns under other headers.
         ignore: Likewise, columns that are not looked at.
         where: Likewise, a condition that rows are to fulfil.
         from_time: Likewise [s].
@@ -128,7 +128,7 @@ def check(
         drop_invalid: Likewise, of rows with a cell that is no number.
         drop_repeats: Likewise, of rows between the samples of these columns.
         join: Likewise, of quantities that are logged at other times.
-        delimiter: Of a file, as of read().
+        delimiter: For a file, as in read().
         decimal: Likewise.
 
     Returns:

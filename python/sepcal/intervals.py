@@ -121,7 +121,7 @@ class Prediction(_core.Prediction):
 
     Attributes:
         outputs: Their names; pickled they are lost.
-        units: Of outputs by name, as far as they are known; pickled they are lost.
+        units: Units of outputs by name, as far as they are known; pickled they are lost.
 
     Example:
         >>> flight = sepcal.datasets.load("pitot")

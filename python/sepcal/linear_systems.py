@@ -64,7 +64,7 @@ def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
 
     Args:
         F: (n, n) [1/s].
-        density: Of w, G Q G', (n, n) [state^2/s].
+        density: Density of w, G Q G', (n, n) [state^2/s].
         dt: [s].
 
     Raises:
@@ -159,7 +159,7 @@ def propagate(
 
     Raises:
         Error: Another shape, or what is not finite, also of what the functions give.
-        Exception: What the functions raise, as it is.
+        Exception: Whatever the functions raise.
 
     Example:
         >>> step = sepcal.propagate(lambda x, t: -x, [1.0], [[0.0]], 0.0, 0.1)

@@ -57,7 +57,7 @@ class MonteCarlo:
     """A study. `print(study)` shows the table.
 
     Args:
-        records: Of stream_trials(), in any order.
+        records: Records of stream_trials(), in any order.
         truth: The parameters' true values by name, where the trials didn't give them.
 
     Attributes:
@@ -161,8 +161,8 @@ class MonteCarlo:
         """The statistics of every parameter, over all fits, converged or not.
 
         Args:
-            level: Of the intervals whose coverage is counted: estimate -+ Student's quantile of the
-                fit's degrees of freedom times its standard error.
+            level: Level of the intervals whose coverage is counted: estimate -+ Student's quantile
+                of the fit's degrees of freedom times its standard error.
 
         Raises:
             Error: level is not between 0 and 1; the trials gave no estimates.

@@ -26,7 +26,7 @@ class Smoothed(_core.SmoothedRecord):
 
     Attributes:
         time: (N,) [s]; None where the data have none, and where it was pickled.
-        units: Of states and outputs by name, as far as they are known; pickled they are lost.
+        units: Units of states and outputs by name, as far as they are known; pickled they are lost.
 
     Example:
         >>> flight = sepcal.datasets.load("aircraft")

@@ -34,7 +34,7 @@ class Stepwise(Page, Generic[Fitted]):
         end: Why no more was: "nothing_found", "most_added", "withheld" (of what passes nothing is
             to be added, as real fits have it), "fit_failed" (that of the next one).
         reason: The same in a sentence.
-        diagnosis: Of the last fit.
+        diagnosis: The last fit's diagnosis.
 
     Example:
         >>> flight = sepcal.datasets.load("pitot")

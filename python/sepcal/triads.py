@@ -158,7 +158,8 @@ class Triad:
     n_z in the readings' unit; nonlinear ones the reference's, then each factor's.
 
     Args:
-        reference: What it sees: triads.FieldInBody(), SpecificForceInBody(), or one of yours.
+        reference: The vector that it measures: triads.FieldInBody(), SpecificForceInBody(), or one
+            of yours.
         *factors: The one next to the readings first: triads.Misalignment(), CrossCoupling(), yours.
 
     Raises:

@@ -51,8 +51,8 @@ def undo(
         offsets: OFS as logged, likewise.
         motors: MOT x as logged, likewise.
         times: Shape (n,) [s].
-        parameters: Of the log.
-        suffix: Of the compass' parameters: "", "2", "3".
+        parameters: The log's parameters.
+        suffix: Suffix of the compass' parameters: "", "2", "3".
 
     Returns:
         The raw readings, (n, 3) [mG], and what was undone, in sentences.

@@ -41,9 +41,9 @@ def draw_spans(
     """Intervals about points, a row each, the first on top; several kinds are drawn below another.
 
     Args:
-        title: Of the figure.
+        title: The figure's title.
         x_title: With the unit.
-        rows: What stands at the left, text or Html.
+        rows: The words at the left, text or Html.
         middle: The points.
         kinds: By the legend's word, a span a row.
     """

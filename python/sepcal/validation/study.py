@@ -244,7 +244,7 @@ def validate(
         truth: A value of every parameter.
         scatter: Standard deviation of every output's noise, by name, or one for all.
         trials: How many.
-        seed: Of the study, as monte_carlo() has it.
+        seed: The study's seed, as monte_carlo() has it.
         executor: The same.
         progress: The same.
         options: FitOptions of sepcal's fits, as bounds, fixed or samples; not those that make it
