@@ -98,8 +98,7 @@ class CommandLine {
                                   "describes a log and says what each problem does to a fit")),
         fit_(cli.add_subcommand("fit", "fits the model to a flight")),
         compare_(add_later_verb("compare", "shows where the model fails")),
-        residuals_(
-            add_later_verb("residuals", "writes what the model leaves, row by row", true, false)),
+        residuals_(add_later_verb("residuals", "writes the residuals, row by row", true, false)),
         intervals_(add_later_verb("intervals", "gives a confidence interval for each parameter")),
         diagnose_(add_later_verb("diagnose", "names the physical effect that is missing")),
         add_(add_later_verb("add", "adds a physical effect and fits again")),
@@ -108,7 +107,7 @@ class CommandLine {
         export_(cli.add_subcommand("export",
                                    "writes a calibration as a header or autopilot parameters")),
         join_(cli.add_subcommand("join", "brings another log's columns to a sensor's rows")),
-        simulate_(cli.add_subcommand("simulate", "makes a flight whose truth is known")) {
+        simulate_(cli.add_subcommand("simulate", "simulates a flight with known truth")) {
     add_flight(*check_);
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
         ->type_name("C.json");
@@ -220,7 +219,7 @@ class CommandLine {
 
   void add_explain(CLI::App& verb) {
     verb.add_flag("--explain", typed_.explain,
-                  "prints all that the fit says of its status, with reasons, not the worst alone");
+                  "prints everything about the fit's status, with reasons, not only the worst");
   }
 
   Instrument& instrument_;

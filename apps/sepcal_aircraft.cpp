@@ -294,7 +294,7 @@ class AircraftApp {
         two_step_(*cli.add_subcommand("two-step",
                                       "reconstructs the path, then fits the aerodynamics to it")),
         compare_(*cli.add_subcommand("compare", "shows where the model fails")),
-        residuals_(*cli.add_subcommand("residuals", "writes what the model leaves, row by row")),
+        residuals_(*cli.add_subcommand("residuals", "writes the residuals, row by row")),
         intervals_(
             *cli.add_subcommand("intervals", "gives a confidence interval for each parameter")),
         diagnose_(*cli.add_subcommand("diagnose", "names the effect or regressor that is missing")),
@@ -303,7 +303,7 @@ class AircraftApp {
         track_(*cli.add_subcommand("track", "estimates against time, as a filter in flight")),
         response_(*cli.add_subcommand("response", "finds frequency responses without a model")),
         design_(*cli.add_subcommand("design", "makes inputs to be flown")),
-        simulate_(*cli.add_subcommand("simulate", "makes a flight whose truth is known")),
+        simulate_(*cli.add_subcommand("simulate", "simulates a flight with known truth")),
         effects_(
             *cli.add_subcommand("effects", "lists effects, regressors and how to write more")) {
     for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &residuals_, &intervals_,
@@ -376,7 +376,7 @@ class AircraftApp {
     }
     for (CLI::App* verb :
          {&fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_, &design_}) {
-      verb->add_flag("--explain", wishes_.explain, "prints all that the fit says of its status");
+      verb->add_flag("--explain", wishes_.explain, "prints everything about the fit's status");
     }
   }
 
