@@ -64,13 +64,12 @@ void add_joining_options(CLI::App& join, Arguments& arguments) {
       ->required();
   add_file(join, "OTHER", arguments.other, "the log whose columns are brought to these rows")
       ->required();
-  join.add_option(
-          "--how", arguments.joining.how,
-          "what stands in a row: a parabola through the samples about it, the straight line "
-          "between two, or the earlier one")
+  join.add_option("--how", arguments.joining.how,
+                  "the value in a row: from a parabola through the nearby samples, from the "
+                  "straight line between two, or the earlier one")
       ->type_name("smooth|linear|held")
       ->capture_default_str();
-  join.add_option("--offset", arguments.joining.offset, "what is added to OTHER's time [s]")
+  join.add_option("--offset", arguments.joining.offset, "seconds to add to OTHER's time")
       ->type_name("S")
       ->capture_default_str();
   add_file(join, "-o,--output", arguments.output, "writes the joined log there")
@@ -80,7 +79,8 @@ void add_joining_options(CLI::App& join, Arguments& arguments) {
 
 /// The calibration comes first here: most exports need no flight.
 void add_exporting_options(CLI::App& verb, Arguments& arguments) {
-  add_file(verb, "CALIBRATION", arguments.calibration, "what fit or add wrote with -o")->required();
+  add_file(verb, "CALIBRATION", arguments.calibration, "the file that fit or add wrote with -o")
+      ->required();
   add_file(verb, "FLIGHT", arguments.flight,
            "the log that it was fitted to, a CSV file [the one that it names]");
   add_file(verb, "-o,--output", arguments.output, "writes what the vehicle loads there")
@@ -94,20 +94,20 @@ class CommandLine {
   CommandLine(Instrument& instrument, CLI::App& cli)
       : instrument_(instrument),
         cli_(cli),
-        check_(cli.add_subcommand("check", "says what a log is, and what that does to a fit")),
+        check_(cli.add_subcommand("check",
+                                  "describes a log and says what each problem does to a fit")),
         fit_(cli.add_subcommand("fit", "fits the model to a flight")),
         compare_(add_later_verb("compare", "shows where the model fails")),
-        residuals_(
-            add_later_verb("residuals", "writes what the model leaves, row by row", true, false)),
-        intervals_(
-            add_later_verb("intervals", "says how far each parameter may lie, by the likelihood")),
+        residuals_(add_later_verb("residuals", "writes the residuals, row by row", true, false)),
+        intervals_(add_later_verb("intervals", "gives a confidence interval for each parameter")),
         diagnose_(add_later_verb("diagnose", "names the physical effect that is missing")),
         add_(add_later_verb("add", "adds a physical effect and fits again")),
         apply_(add_later_verb("apply", "adds the calibrated readings to a log", false)),
         track_(add_later_verb("track", "estimates parameters row by row, as in flight", false)),
-        export_(cli.add_subcommand("export", "writes what a vehicle loads of a calibration")),
+        export_(cli.add_subcommand("export",
+                                   "writes a calibration as a header or autopilot parameters")),
         join_(cli.add_subcommand("join", "brings another log's columns to a sensor's rows")),
-        simulate_(cli.add_subcommand("simulate", "makes a flight whose truth is known")) {
+        simulate_(cli.add_subcommand("simulate", "simulates a flight with known truth")) {
     add_flight(*check_);
     add_file(*check_, "-o,--output", typed_.output, "writes what is found there")
         ->type_name("C.json");
@@ -117,11 +117,11 @@ class CommandLine {
 
     add_flight(*fit_);
     add_more_flights(*fit_, typed_.more_flights,
-                     "other flights, fitted jointly with it; their names end in .csv");
+                     "more flights, fitted jointly with the first; their names end in .csv");
     add_probe_options(*fit_);
     fit_->option_defaults()->group("The fit");
     fit_->add_option("--own", typed_.own,
-                     "of several flights: parameters that each has for itself, e.g. wind")
+                     "with several flights: parameters estimated per flight, e.g. wind")
         ->type_name("NAME[,...]")
         ->delimiter(',')
         ->allow_extra_args(false);
@@ -193,7 +193,8 @@ class CommandLine {
     if (of_several)
       add_more_flights(verb, typed_.more_flights,
                        "the other flights of a joint fit, names in .csv");
-    add_file(verb, "CALIBRATION", typed_.calibration, "what fit wrote with -o")->required();
+    add_file(verb, "CALIBRATION", typed_.calibration, "the file that fit wrote with -o")
+        ->required();
     typed_.log.add_log_choice_to(verb);
     if (has_json) {
       add_explain(verb);
@@ -207,7 +208,7 @@ class CommandLine {
   }
 
   void add_probe_options(CLI::App& verb) {
-    verb.option_defaults()->group("What is known of the sensor");
+    verb.option_defaults()->group("The sensor");
     instrument_.add_probe_options(verb);
     verb.option_defaults()->group("Options");
   }
@@ -218,7 +219,7 @@ class CommandLine {
 
   void add_explain(CLI::App& verb) {
     verb.add_flag("--explain", typed_.explain,
-                  "prints all that the fit says of its status, with reasons, not the worst alone");
+                  "prints everything about the fit's status, with reasons, not only the worst");
   }
 
   Instrument& instrument_;

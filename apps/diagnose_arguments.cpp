@@ -21,12 +21,14 @@ int exit_code(Verdict verdict) {
 
 void DiagnoseArguments::add_to(CLI::App& diagnose) {
   diagnose.add_flag("--auto", adds_,
-                    "adds what is advised, fits and asks again, until nothing passes; -o writes "
-                    "the fit then");
+                    "adds the advised effect, fits and diagnoses again until nothing passes; -o "
+                    "then writes the fit");
   const auto read = [this](const std::string& text) {
     most_ = parse_whole_number("--most", text, std::numeric_limits<std::uint32_t>::max());
   };
-  diagnose.add_option_function<std::string>("--most", read, "of --auto: at most so many effects")
+  diagnose
+      .add_option_function<std::string>("--most", read,
+                                        "with --auto: the largest number of effects to add")
       ->type_name("N");
   diagnose
       .add_option("--only", only_,
@@ -36,24 +38,22 @@ void DiagnoseArguments::add_to(CLI::App& diagnose) {
       ->allow_extra_args(false);
   diagnose
       .add_option("--error-budget", error_budget_,
-                  "how far errors wander at most, in their units, where you know it: "
+                  "how far sensor errors drift at most, if you know it, in their units: "
                   "velocity=0.3,heading=0.05; the page names them")
       ->type_name("NAME=SIZE,...")
       ->delimiter(',');
-  diagnose
-      .add_option("--within", within_,
-                  "answers within so many seconds, and says what it had no time for")
+  diagnose.add_option("--within", within_, "answers within this time and says what it skipped")
       ->type_name("SECONDS");
   diagnose
       .add_option("--pse", pse_,
-                  "what bounds the noise in PSE: sidpac, half the variance of what is measured, or "
-                  "classic, all of it")
+                  "the noise bound in PSE, the predicted square error: sidpac, half the "
+                  "measurement's variance, or classic, all of it")
       ->type_name("BOUND")
       ->capture_default_str();
   diagnose
       .add_option("--rule", rule_,
-                  "what decides: verdict, or partial-f, as stepwise regression does: the largest "
-                  "partial F from 20 on, one candidate at a time, residuals taken for white")
+                  "how to decide: verdict, or partial-f, by stepwise regression: the largest "
+                  "partial F from 20 on, one candidate at a time, as if residuals were white")
       ->type_name("RULE")
       ->capture_default_str();
   diagnose

@@ -18,46 +18,47 @@ void ExportArguments::add_to(CLI::App& verb) {
   };
   verb.add_option_function<std::string>(
           "--sensor", read_sensor,
-          "which sensor, as the autopilot counts [its first]; of a header, its names end so")
+          "the sensor's number, as the autopilot counts [its first]; a header's names "
+          "end with it")
       ->type_name("N");
-  verb.add_option(
-          "--device-id", device_id_,
-          "of PX4: the sensor's CAL_MAGn_ID, or the pressure sensor's id, which says its kind")
+  verb.add_option("--device-id", device_id_,
+                  "for PX4: the sensor's CAL_MAGn_ID, or the pressure sensor's id, which tells "
+                  "its kind")
       ->type_name("ID");
   verb.add_option("--airspeed-sensor", airspeed_sensor_,
-                  "of a tube: membrane, or sdp3x (SDP31, 32, 33) [by the device id or the log]")
+                  "for a tube: membrane, or sdp3x (SDP31, 32, 33) [by the device id or the log]")
       ->type_name("membrane|sdp3x");
-  verb.add_option(
-          "--cal-air", cal_air_,
-          "of PX4 with an SDP3x: CAL_AIR_CMODEL, CAL_AIR_TUBELEN [m], CAL_AIR_TUBED_MM [the "
-          "log's, else 0,0.2,1.5]")
+  verb.add_option("--cal-air", cal_air_,
+                  "for PX4 with an SDP3x: CAL_AIR_CMODEL, CAL_AIR_TUBELEN [m], CAL_AIR_TUBED_MM "
+                  "[the log's, otherwise 0,0.2,1.5]")
       ->type_name("MODEL,LENGTH,DIAMETER");
   verb.add_option("--logged-airspeed", logged_airspeed_,
-                  "what a logged airspeed is: true or equivalent, which autopilots call indicated "
-                  "[true]")
+                  "the kind of a logged airspeed: true, or equivalent, which autopilots call "
+                  "indicated [true]")
       ->type_name("true|equivalent");
   verb.add_option("--rotation", rotation_,
-                  "of a magnetometer for an autopilot, which can't turn it: keep, the calibration "
-                  "as it is less its rotation (the symmetric factor of C^-1), or refit, the "
-                  "symmetric matrix that fits the flight best [the better by its largest error of "
-                  "heading]")
+                  "for a magnetometer, whose rotation an autopilot can't hold: keep, the "
+                  "calibration without its rotation (the symmetric factor of C^-1), or refit, "
+                  "the symmetric matrix that fits the flight best [the one with the smaller "
+                  "largest heading error]")
       ->type_name("keep|refit");
   verb.add_option("--mounting", mounting_,
-                  "of PX4: how the sensor is turned, for CAL_MAGn_ROT, where the log has it turned "
-                  "into body axes [deg]")
+                  "for PX4: the sensor's rotation [deg], for CAL_MAGn_ROT, if the log's readings "
+                  "are in body axes")
       ->type_name("ROLL,PITCH,YAW");
   verb.add_option("--in-use", in_use_,
-                  "of a logged airspeed: the ARSPD_RATIO or ASPD_SCALE_n that it was read with")
+                  "for a logged airspeed: the ARSPD_RATIO or ASPD_SCALE_n in use when it was "
+                  "logged")
       ->type_name("VALUE");
   verb.add_flag("--single,--float", options_.single,
-                "of a header: computes in float, for a processor that has no double");
+                "for a header: computes in float, for a processor without double");
   verb.add_option("--without", options_.without,
-                  "leaves an effect out and fits the rest anew; may be repeated")
+                  "leaves an effect out and fits the rest again; may be repeated")
       ->type_name("EFFECT")
       ->take_all()
       ->allow_extra_args(false);
   verb.add_flag("--force", options_.force,
-                "exports also what did not converge, is not all determined, or is at a bound");
+                "exports a fit that did not converge, is not fully determined, or is at a bound");
 }
 
 ExportOptions ExportArguments::resolve() const {

@@ -62,13 +62,13 @@ void add_manners(CLI::App& verb) {
   verb.option_defaults()->group(result_group);
   verb.add_flag("-q,--quiet", typed.quiet, "prints no page, no notes and no progress");
   verb.add_flag("-v,--verbose", typed.verbose,
-                "prints all that there is to say, and what was read and how long it took");
+                "prints everything, also what was read and how long it took");
   verb.add_flag("--exit-zero", typed.exit_zero,
-                "exits with 0 where a result is there, whatever its status or verdict");
+                "exits with 0 if there is a result, whatever its status or verdict");
   if (takes_project(verb)) {
     verb.add_option("--project", typed.project,
-                    "what is known of the instrument (default: sepcal.toml in the flight's folder "
-                    "or above)")
+                    "the project file that describes the instrument (default: sepcal.toml in the "
+                    "flight's folder or above)")
         ->type_name("FILE.toml");
   }
   verb.get_help_ptr()->group(result_group);

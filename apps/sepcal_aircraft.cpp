@@ -59,19 +59,21 @@ class ModelArguments {
   void add_to_fit(CLI::App& verb) {
     add_model_to(verb);
     verb.add_option("--method", method_,
-                    "output-error: states are integrated; filter-error: noise drives them too, and "
-                    "its size is estimated; frequency: over a band, of aero equation error, of an "
-                    "aircraft output "
-                    "error")
+                    "output-error: integrates the states; filter-error: also estimates the size of "
+                    "noise that drives them; frequency: fits over a band, by equation error for "
+                    "aero and by output error for an aircraft")
         ->type_name("HOW")
         ->capture_default_str();
     verb.add_option("--band", band_,
-                    "of --method frequency [Hz]; else 0.1:2, what a rigid aircraft does")
+                    "the band for --method frequency [Hz]; otherwise 0.1:2, the motions of a rigid "
+                    "aircraft")
         ->type_name("LOW:HIGH");
     verb.add_option("--spacing", spacing_,
-                    "of its frequencies [Hz]; else one over the length of a segment")
+                    "the step between its frequencies [Hz]; otherwise one over the length of a "
+                    "segment")
         ->type_name("HZ");
-    verb.add_option("--hessian", hessian_, "of filter error's standard errors: fisher or observed")
+    verb.add_option("--hessian", hessian_,
+                    "the information matrix for filter error's standard errors: fisher or observed")
         ->type_name("WHICH")
         ->capture_default_str();
   }
@@ -84,17 +86,18 @@ class ModelArguments {
              "the aircraft: area_m2, chord_m, span_m, mass_kg, inertia_kgm2 ...")
         ->type_name("AIRCRAFT.json");
     verb.add_option("--equation", equations_,
-                    "takes the place of a coefficient's own regressors; of --model aero only these "
-                    "coefficients are fitted then; may be repeated")
+                    "replaces a coefficient's own regressors; --model aero then fits only these "
+                    "coefficients; may be repeated")
         ->type_name("C=1,X,...")
         ->take_all()
         ->allow_extra_args(false);
-    verb.add_option("--inputs", inputs_, "what inputs do between rows: linear or hold")
+    verb.add_option("--inputs", inputs_, "how inputs change between rows: linear or hold")
         ->type_name("HOW")
         ->capture_default_str();
     verb.add_option("--measured", measured_, "states read from the log instead of integrated")
         ->type_name("v,phi,psi");
-    verb.add_option("--outputs", outputs_, "what is compared with the log; else all that is there")
+    verb.add_option("--outputs", outputs_,
+                    "the outputs compared with the log; otherwise all that are logged")
         ->type_name("NAMES");
     verb.add_option("--shoot", shoot_, "cuts segments every T seconds, each with its own start")
         ->type_name("T");
@@ -104,13 +107,13 @@ class ModelArguments {
     verb.add_flag("--scale-about-start", options_.trajectory.scales_about_start,
                   "scales multiply the change since the segment's start, as SIDPAC has them");
     verb.add_flag("--position", options_.position,
-                  "of path: the position is integrated too, and compared with north_m, east_m and "
-                  "down_m, or with lat, lon and altitude");
-    verb.add_option("--gravity", options_.gravity, "at the place of the flight [m/s^2]")
+                  "for path: also integrates the position and compares it with north_m, east_m "
+                  "and down_m, or with lat, lon and altitude");
+    verb.add_option("--gravity", options_.gravity, "gravity at the place of the flight [m/s^2]")
         ->type_name("G")
         ->capture_default_str();
     verb.add_option("--window", options_.window,
-                    "of the local cubic that differentiates rates [s]; 0: seven rows")
+                    "window of the local cubic that differentiates rates [s]; 0: seven rows")
         ->type_name("T")
         ->capture_default_str();
   }
@@ -177,24 +180,27 @@ class ResponseArguments {
  public:
   void add_to(CLI::App& verb) {
     verb.add_option("--input", inputs_,
-                    "a column of the log by its header; each is taken with what the others leave; "
-                    "may be repeated")
+                    "an input, by its header in the log; with several, each is allowed for in the "
+                    "others; may be repeated")
         ->type_name("COLUMN")
         ->take_all()
         ->allow_extra_args(false)
         ->required();
-    verb.add_option("--of", output_, "the column that follows them")
+    verb.add_option("--of", output_, "the output that responds to the inputs")
         ->type_name("COLUMN")
         ->required();
-    verb.add_option("--band", band_, "the frequencies [Hz]; else 0.1:2")->type_name("LOW:HIGH");
-    verb.add_option("--spacing", options_.band.spacing, "of them [Hz]; 0: one over the window")
+    verb.add_option("--band", band_, "the band of frequencies [Hz]; otherwise 0.1:2")
+        ->type_name("LOW:HIGH");
+    verb.add_option("--spacing", options_.band.spacing,
+                    "the step between frequencies [Hz]; 0: one over the window")
         ->type_name("HZ")
         ->capture_default_str();
-    verb.add_option("--window", options_.window,
-                    "that is averaged over the flight [s]; 0: a fifth of its longest segment")
+    verb.add_option(
+            "--window", options_.window,
+            "length of the windows that are averaged [s]; 0: a fifth of the longest segment")
         ->type_name("T")
         ->capture_default_str();
-    verb.add_option("--level", options_.level, "of the ranges")
+    verb.add_option("--level", options_.level, "confidence level of the ranges")
         ->type_name("P")
         ->capture_default_str();
   }
@@ -230,15 +236,17 @@ class DesignArguments {
                     "input")
         ->type_name("WHICH")
         ->capture_default_str();
-    verb.add_option("--band", band_, "to be excited [Hz]; else 0.1:2")->type_name("LOW:HIGH");
-    verb.add_option("--duration", multisines_.duration, "of a multisine [s]")
+    verb.add_option("--band", band_, "the band to excite [Hz]; otherwise 0.1:2")
+        ->type_name("LOW:HIGH");
+    verb.add_option("--duration", multisines_.duration, "length of a multisine [s]")
         ->type_name("T")
         ->capture_default_str();
     verb.add_option("--rate", multisines_.rate, "rows a second")
         ->type_name("HZ")
         ->capture_default_str();
     verb.add_flag("--schroeder", schroeder_,
-                  "phases by Schroeder's formula, not those of the least peak factor");
+                  "takes phases by Schroeder's formula instead of those with the smallest peak "
+                  "factor");
     verb.add_option("--before", steps_.before, "rest before steps [s]")
         ->type_name("T")
         ->capture_default_str();
@@ -280,21 +288,22 @@ class DesignArguments {
 class AircraftApp {
  public:
   explicit AircraftApp(CLI::App& cli)
-      : check_(*cli.add_subcommand("check", "says what a log is, and what that does to a fit")),
+      : check_(*cli.add_subcommand("check",
+                                   "describes a log and says what each problem does to a fit")),
         fit_(*cli.add_subcommand("fit", "fits a flight path or an aircraft to a flight")),
         two_step_(*cli.add_subcommand("two-step",
                                       "reconstructs the path, then fits the aerodynamics to it")),
         compare_(*cli.add_subcommand("compare", "shows where the model fails")),
-        residuals_(*cli.add_subcommand("residuals", "writes what the model leaves, row by row")),
-        intervals_(*cli.add_subcommand("intervals",
-                                       "says how far each parameter may lie, by the likelihood")),
+        residuals_(*cli.add_subcommand("residuals", "writes the residuals, row by row")),
+        intervals_(
+            *cli.add_subcommand("intervals", "gives a confidence interval for each parameter")),
         diagnose_(*cli.add_subcommand("diagnose", "names the effect or regressor that is missing")),
         add_(*cli.add_subcommand("add", "adds an effect and fits again")),
         apply_(*cli.add_subcommand("apply", "adds what was flown to a log")),
         track_(*cli.add_subcommand("track", "estimates against time, as a filter in flight")),
         response_(*cli.add_subcommand("response", "finds frequency responses without a model")),
         design_(*cli.add_subcommand("design", "makes inputs to be flown")),
-        simulate_(*cli.add_subcommand("simulate", "makes a flight whose truth is known")),
+        simulate_(*cli.add_subcommand("simulate", "simulates a flight with known truth")),
         effects_(
             *cli.add_subcommand("effects", "lists effects, regressors and how to write more")) {
     for (CLI::App* verb : {&check_, &fit_, &two_step_, &compare_, &residuals_, &intervals_,
@@ -316,20 +325,20 @@ class AircraftApp {
     }
     for (CLI::App* verb :
          {&compare_, &residuals_, &intervals_, &diagnose_, &add_, &apply_, &track_}) {
-      add_file(*verb, "FIT", base_, "what fit wrote with -o")->required();
+      add_file(*verb, "FIT", base_, "the file that fit wrote with -o")->required();
     }
     for (CLI::App* verb : {&fit_, &two_step_, &apply_, &track_}) {
       add_deviations(
           *verb, "--process-noise", process_noise_,
           "root of the spectral density of a noise that drives the states, in the unit "
-          "of the model's table (ax of a path: m/s^2/sqrt(Hz)); a fit allows for it in its "
-          "intervals, by filter error it holds it; apply then adds smoothed states; may be "
-          "repeated");
+          "of the model's table (for ax of a path m/s^2/sqrt(Hz)); a fit allows for it "
+          "in its intervals, and filter error holds it at this size; apply adds smoothed "
+          "states; may be repeated");
     }
     tracking_.add_to_aircraft(track_);
     add_deviations(track_, "--initial-state", initial_states_,
-                   "standard deviation of a state where a segment begins; else as good as "
-                   "unknown; may be repeated");
+                   "standard deviation of a state at the start of a segment; otherwise "
+                   "practically unknown; may be repeated");
     add_.add_option("E", effect_, "the effect: Cm[alpha^2], imu_late (see effects)")->required();
     add_output(check_, "C.json", false);
     add_output(compare_, "COMPARED.json", false);
@@ -346,11 +355,12 @@ class AircraftApp {
     response_arguments_.add_to(response_);
     add_output(response_, "RESPONSE.csv", true);
     design_arguments_.add_to(design_);
-    add_file(
-        design_, "--for", base_,
-        "what fit wrote of an aircraft: says which errors a flight of these inputs would leave")
+    add_file(design_, "--for", base_,
+             "an aircraft's fit: predicts the standard errors that a flight with these "
+             "inputs would give")
         ->type_name("FIT.json");
-    add_file(design_, "--flight", flight_, "with --for: where the aircraft begins, its first row")
+    add_file(design_, "--flight", flight_,
+             "with --for: the log in whose first row the aircraft starts")
         ->type_name("FLIGHT.csv");
     add_output(design_, "INPUT.csv", true);
     add_output(simulate_, "FLIGHT.csv", true);
@@ -366,7 +376,7 @@ class AircraftApp {
     }
     for (CLI::App* verb :
          {&fit_, &two_step_, &compare_, &intervals_, &diagnose_, &add_, &design_}) {
-      verb->add_flag("--explain", wishes_.explain, "prints all that the fit says of its status");
+      verb->add_flag("--explain", wishes_.explain, "prints everything about the fit's status");
     }
   }
 

@@ -7,16 +7,15 @@ namespace sepcal::app {
 
 void SimulationArguments::add_to(CLI::App& simulate) {
   simulate
-      .add_option(
-          "--hide", hidden_,
-          "lets a physical effect be at work, e.g. time_offset=0.05; one SIZE goes to every "
-          "component; may be repeated")
+      .add_option("--hide", hidden_,
+                  "adds a physical effect, e.g. time_offset=0.05; one SIZE goes to every "
+                  "component; may be repeated")
       ->type_name("E=SIZE[:SIZE...]")
       ->take_all()
       ->allow_extra_args(false);
   simulate
       .add_option("--excitation", excitation_,
-                  "what is flown: rich, poor, or third (a magnetometer's, of the sphere)")
+                  "the maneuvers: rich, poor, or third (a magnetometer's third of the sphere)")
       ->type_name("HOW")
       ->capture_default_str();
   simulate.add_option("--noise", noise_, "white, ar, pink or bursty")

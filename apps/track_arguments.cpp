@@ -15,24 +15,25 @@ void TrackArguments::add_to(CLI::App& verb) {
       ->type_name("HOW")
       ->capture_default_str();
   verb.add_option("--changes", changes_,
-                  "of ekf, iekf, srif, parameters that jump on the way: ignore; find the first "
-                  "and say when and which; follow: open what moved and go on")
+                  "for ekf, iekf and srif, parameters that jump in flight: ignore them; find the "
+                  "first and say when it jumped; follow each and go on")
       ->type_name("HOW")
       ->capture_default_str();
   verb.add_option("--forgetting", options_.how.forgetting,
-                  "what a sample counts for after the next, above 0, at most 1")
+                  "forgetting factor, above 0, at most 1: each new row multiplies the weight of "
+                  "older ones by it")
       ->type_name("MU")
       ->capture_default_str();
   verb.add_option("--memory", options_.how.memory,
-                  "of rls, ekf, iekf, srif, in place of --forgetting: so many rows count, fewer "
-                  "where innovations are larger than expected")
+                  "for rls, ekf, iekf and srif, instead of --forgetting: how many rows count; "
+                  "fewer do while innovations are larger than expected")
       ->type_name("ROWS");
-  verb.add_option("--band", band_, "of rft, the frequencies [Hz]; else 0.1:2")
+  verb.add_option("--band", band_, "for rft: the band of frequencies [Hz]; otherwise 0.1:2")
       ->type_name("LOW:HIGH");
   add_whole_number(verb, "--every", options_.how.every,
-                   "of rml: samples from a step of the parameters to the next");
+                   "for rml: the number of samples between steps of the parameters");
   add_whole_number(verb, "--start-rows", options_.start_rows,
-                   "fits so many first rows, and goes on after them; 0: starts from the fit, of "
+                   "fits the first N rows and goes on after them; 0: starts from the fit of "
                    "another flight");
   add_deviations(verb, "--walk", walk_,
                  "lets a parameter change on the way, a random walk of SD [unit/sqrt(s)]");
@@ -41,8 +42,8 @@ void TrackArguments::add_to(CLI::App& verb) {
 void TrackArguments::add_to_aircraft(CLI::App& verb) {
   add_to(verb);
   verb.add_option("--second", second_,
-                  "of two steps, how the coefficients are followed behind the path: rls, ekf, srif "
-                  "or rft; --forgetting, --memory, --band and --changes are theirs")
+                  "for a two-step fit: how the coefficients are estimated along the path: rls, "
+                  "ekf, srif or rft; --forgetting, --memory, --band and --changes apply to them")
       ->type_name("HOW")
       ->capture_default_str();
 }
@@ -50,7 +51,7 @@ void TrackArguments::add_to_aircraft(CLI::App& verb) {
 void TrackArguments::add_to_sensor(CLI::App& verb) {
   add_to(verb);
   add_deviations(verb, "--noise", noise_,
-                 "standard deviation of an output; else the start's; may be repeated");
+                 "standard deviation of an output; otherwise that of the start; may be repeated");
   verb.add_option(
           "--own", own_,
           "with --start-rows: parameters of this flight alone, as \"wind\"; the others begin "

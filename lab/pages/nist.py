@@ -27,65 +27,64 @@ SOLVED = 4.0
 HEAD = """# NIST's nonlinear regression sets
 
 The 27 [Statistical Reference Datasets](https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml)
-for nonlinear regression have values certified to 11 digits, and two starts each: the first far
-off, the second nearer. This page is written by
+for nonlinear regression have values certified to 11 digits and two starts each: the first
+far off, the second nearer. This page says how many digits sepcal and others reach. It is written
+by
 
     python lab/pages/nist.py
 
-from `tests/oracle/nist_data.json`, and `tests/oracle/test_nist.py` asserts what it says of
+from `tests/oracle/nist_data.json`; `tests/oracle/test_nist.py` asserts its statements about
 sepcal.
 
-sepcal gets a separable set as one: xi1 holds the parameters in which the model is affine, and the
-start is then that of xi2 alone. Chwirut's model has an empty linear part. `start=` begins there,
-and nothing is sampled; the other options are the defaults, but for `coloured_errors=False`:
-NIST's standard deviations are those of white residuals. R is estimated. `auto` begins projected,
-and joint too begins with xi1 solved at the start. The models are written in Python with
-derivatives by hand, the same that SciPy has as its Jacobian; what differences reach instead
-stands below.
+sepcal gets separable sets as such: xi1 holds the parameters in which the model is affine, and the
+start is that of xi2 alone. Chwirut's model has no linear part. `start=` sets the start, and nothing
+is sampled. All other options are the defaults except `coloured_errors=False`, because NIST's
+standard deviations assume white residuals. R is estimated. `auto` begins projected; joint also
+begins with xi1 solved at the start. The models are written in Python with hand-written derivatives,
+which SciPy gets as its Jacobian; the digits with differences instead are below.
 
-The others get all parameters and NIST's whole start. SciPy's `least_squares` has exact
-derivatives and `x_scale="jac"`, lmfit (`leastsq`) its differences, Ceres automatic derivatives,
-one residual block a sample and DENSE_QR. They stop at tolerances of 1e-15 (Ceres: 1e-16) or after
-20,000 evaluations. Standard deviations of SciPy and Ceres are those of the exact Jacobian where
-they ended.
+The others get all parameters and NIST's whole start. SciPy's `least_squares` has exact derivatives
+and `x_scale="jac"`, lmfit (`leastsq`) its own differences, and Ceres automatic derivatives, one
+residual block per sample and DENSE_QR. They stop at tolerances of 1e-15 (Ceres: 1e-16) or after
+20,000 evaluations. Standard deviations of SciPy and Ceres come from the exact Jacobian at their
+solution.
 
-Digits are -log10 of the relative error, the least over the parameters, 11 at most. A set counts
-as solved where the program says that it converged and all parameters have 4 digits; the aim is
-8, and 6 on the higher level.
+Digits are -log10 of the relative error, at most 11; the worst parameter counts. A set counts as
+solved if the program says that it converged and all parameters have 4 digits; the aim is 8, and 6
+on the higher level.
 """
 
 MEANING = """
-Each cell holds the whole digits of the parameters, of the standard deviations and of the residual
-sum of squares. `x`: the same curve with its terms in another order or signs reversed in pairs,
-counted after putting them right. `!`: the program says that it did not converge; a dash stands
-for no digit at all.
+Each cell holds the whole digits of the parameters, the standard deviations and the residual sum of
+squares. `x`: the same curve with its terms in another order or signs reversed in pairs, counted
+after they were put right. `!`: the program says that it did not converge. A dash means not one
+digit.
 """
 
 DIFFERENCES = """
 ## Without derivatives by hand
 
-A model in Python that gives none is differentiated by central differences of fourth order. These
-are the sets in which sepcal auto then has other digits; every other one has the same.
+sepcal differentiates a Python model without derivatives by fourth-order central differences. In
+these sets the digits of sepcal auto then change; in all others they stay.
 """
 
 REMARKS = """
 ## What is left
 
-- *Lanczos1* has residuals of 1e-13, the rounding of its data in double precision: no program gets
-  more than 3 digits of their sum of squares, nor of the standard deviations that come of it. They
-  lie below the floor of the noise, 1e-12 of the output; the standard errors are the residuals'
-  own all the same.
-- *Lanczos from start 1, jointly*: the three exponentials come out in another order. Nothing
-  prefers one order to another, and which of them a far start leads to is chance.
-- *MGH10 from start 1, jointly*: a curved valley, along which xi1 and xi2 have to change together
-  by many orders of magnitude. Within 200 iterations a descent, the default, the fit ends where
-  "b2, b3 and b1 can't be told apart", with the status `not_identifiable` and not a wrong answer
-  that passes for one; `iterations=20000` converges after some 7,000, to the same digits. Projected
-  takes 64.
-- *Hahn1 by differences*: b7 is -1e-7 and multiplies x^3 up to 6e8. Without bounds nothing says
-  that it is small, and a step that would suit a parameter of order one is far too long: from
-  start 1 the fit does not converge, from start 2 the check of the model refuses it. With x in
-  hundreds of kelvins (b7 is then -0.12) or with derivatives by hand it has its ten digits.
+- *Lanczos1* has residuals of 1e-13, the rounding of its data in double precision. No program gets
+  more than 3 digits of their sum of squares or of the standard deviations that follow from it. The
+  residuals lie below sepcal's noise floor, 1e-12 of the output; the standard errors still follow
+  from the residuals.
+- *Lanczos from start 1, jointly*: the three exponentials come out in another order. No order is
+  better than another, and which one a far start leads to is chance.
+- *MGH10 from start 1, jointly*: in a curved valley xi1 and xi2 have to change together by many
+  orders of magnitude. Within the default 200 iterations per descent the fit ends at "b2, b3 and b1
+  can't be told apart" with the status `not_identifiable`, so it does not pass off a wrong answer as
+  right. `iterations=20000` converges after some 7,000, to the same digits. Projected takes 64.
+- *Hahn1 by differences*: b7 is -1e-7 and multiplies x^3 up to 6e8. Without bounds sepcal can't know
+  that it is small, and a difference step for a parameter of order one is far too long. From start 1
+  the fit does not converge; from start 2 the model check refuses it. With x in hundreds of kelvins
+  (b7 is then -0.12) or with hand-written derivatives it has its ten digits.
 - Chwirut's model has no linear part: projected and joint are the same.
 """
 

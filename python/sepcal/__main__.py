@@ -73,7 +73,7 @@ def is_of_own_model(words: Sequence[str]) -> bool:
 
 
 def run_native(words: Sequence[str]) -> int:
-    """What needs no Python beside the readers of logs."""
+    """Commands that need no Python beside the readers of logs."""
     sys.stdout.flush()
     tables = []
     if words and words[0] in ("completion", "manual"):

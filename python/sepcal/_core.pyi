@@ -150,7 +150,7 @@ __all__: list[str] = [
 
 class OptionRow:
     """
-    What is known of an option of fit().
+    An option of fit().
     """
 
     _fields: typing.ClassVar[tuple] = (
@@ -173,17 +173,17 @@ class OptionRow:
     @property
     def choices(self) -> list[str]:
         """
-        Of one that is chosen by name.
+        Choices of an option that is chosen by name.
         """
     @property
     def flags(self) -> list[str]:
         """
-        Of the programs; empty: code alone has it.
+        The programs' flags; empty: code alone has it.
         """
     @property
     def form(self) -> str:
         """
-        What stands behind the flag.
+        The form of the flag's value.
         """
     @property
     def is_of_log(self) -> bool:
@@ -202,7 +202,7 @@ class OptionRow:
     @property
     def unset(self) -> str:
         """
-        What holds where it is not given; empty: its default.
+        The words for an option that is not given; empty: its default.
         """
 
 class Options:
@@ -491,7 +491,7 @@ class Combination:
     @property
     def standard_error(self) -> float:
         """
-        Of the combination; infinite where it is singular.
+        Standard error of the combination; infinite where it is singular.
         """
     @property
     def text(self) -> str:
@@ -526,27 +526,27 @@ class EffectSetting:
     @property
     def centre(self) -> float | None:
         """
-        Of a power's driver, in the driver's unit.
+        Centre of a power's driver, in the driver's unit.
         """
     @property
     def knots(self) -> tuple[float, ...]:
         """
-        Of a spline.
+        Knots of a spline.
         """
     @property
     def labels(self) -> tuple[str, ...]:
         """
-        Of the driver `maneuver`; the first has no coefficient.
+        Labels of the driver `maneuver`; the first has no coefficient.
         """
     @property
     def mean(self) -> float | None:
         """
-        Of the power over the fitted rows, where it is taken away.
+        Mean of the power over the fitted rows, where it is taken away.
         """
     @property
     def means(self) -> tuple[float, ...]:
         """
-        Of its functions over the fitted rows, where they are taken away.
+        Means of its functions over the fitted rows, where they are taken away.
         """
     @property
     def name(self) -> str:
@@ -561,7 +561,7 @@ class EffectSetting:
     @property
     def t0(self) -> float | None:
         """
-        Of a step [s].
+        t0 of a step [s].
         """
 
 class LocalMinimum:
@@ -847,7 +847,7 @@ class Fit:
     @property
     def iterations(self) -> int:
         """
-        Of stage two's minimisations.
+        Iterations of stage two's minimisations.
         """
     @property
     def log_likelihood(self) -> float:
@@ -882,7 +882,7 @@ class Fit:
     @property
     def noise_iterations(self) -> int:
         """
-        Of R against the parameters.
+        Alternations of R with the parameters.
         """
     @property
     def noise_sizes(self) -> dict[str, NoiseSize]:
@@ -919,7 +919,7 @@ class Fit:
     @property
     def text(self) -> str:
         """
-        What print() shows: the app's page.
+        The app's page, as print() shows it.
         """
     @property
     def unobservable(self) -> list[Combination]:
@@ -955,7 +955,7 @@ class CataloguedEffect:
     @property
     def equation(self) -> str:
         """
-        What joins the model.
+        The equation that joins the model.
         """
     @property
     def name(self) -> str:
@@ -965,7 +965,7 @@ class CataloguedEffect:
     @property
     def unit(self) -> str:
         """
-        Of its coefficient.
+        Unit of its coefficient.
         """
 
 class Model:
@@ -1077,7 +1077,7 @@ class NoiseFit:
     @property
     def evaluations(self) -> int:
         """
-        Of the likelihood.
+        Evaluations of the likelihood.
         """
     @property
     def informative_rows(self) -> int:
@@ -1182,12 +1182,12 @@ class Intervals:
     @property
     def text(self) -> str:
         """
-        What print() shows: of a calibration's, the app's page.
+        The text that print() shows: for a calibration's, the app's page.
         """
 
 class Prediction:
     """
-    What a fit says of N samples, in the outputs' units and the model's order of outputs.
+    A fit's predictions of N samples, in the outputs' units and the model's order of outputs.
     """
 
     _fields: typing.ClassVar[tuple] = (
@@ -1233,7 +1233,7 @@ class Prediction:
 
 class Certificate:
     """
-    What is proven of a fit's cost in a box.
+    A proof about a fit's cost in a box.
     """
 
     _fields: typing.ClassVar[tuple] = (
@@ -1333,12 +1333,12 @@ class CostBound:
     @property
     def l_1(self) -> float:
         """
-        Of |xi1|.
+        Bound of |xi1|.
         """
     @property
     def l_2(self) -> float:
         """
-        Of |xi2 - xi2p|.
+        Bound of |xi2 - xi2p|.
         """
     @property
     def l_a(self) -> float:
@@ -1348,7 +1348,7 @@ class CostBound:
     @property
     def l_b(self) -> float:
         """
-        Of its b.
+        The same constant for b.
         """
     @property
     def lower(self) -> float:
@@ -1406,7 +1406,7 @@ class SingleStageFit:
     @property
     def evaluations(self) -> int:
         """
-        Of the cost; of Levenberg-Marquardt iterations.
+        Evaluations of the cost; of Levenberg-Marquardt iterations.
         """
     @property
     def names(self) -> tuple[str, ...]:
@@ -1421,7 +1421,7 @@ class SingleStageFit:
     @property
     def noise_iterations(self) -> int:
         """
-        Of R against the parameters.
+        Alternations of R with the parameters.
         """
 
 class FirstStep:
@@ -1447,7 +1447,7 @@ class FirstStep:
     @property
     def condition(self) -> float:
         """
-        Of H, its columns of unit length.
+        Condition of H, its columns of unit length.
         """
     @property
     def information(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -1467,7 +1467,7 @@ class FirstStep:
     @property
     def rank(self) -> int:
         """
-        Of H.
+        Rank of H.
         """
     @property
     def states(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -1506,7 +1506,7 @@ class HauptKasdinFit:
     @property
     def cost(self) -> float:
         """
-        Of Eq. 32.
+        Cost of Eq. 32.
         """
     @property
     def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -1521,7 +1521,7 @@ class HauptKasdinFit:
     @property
     def evaluations(self) -> int:
         """
-        Of the second step.
+        Evaluations of the second step.
         """
     @property
     def first(self) -> FirstStep:
@@ -1599,7 +1599,7 @@ class AlonsoShusterFit:
     @property
     def iterations(self) -> int:
         """
-        Of the second step.
+        Iterations of the second step.
         """
     @property
     def message(self) -> str:
@@ -1835,12 +1835,12 @@ class Disturbance:
     @property
     def rows(self) -> int:
         """
-        Of the longest stretch beyond 3; 0: there is none.
+        Length of the longest run beyond 3 sigma, in rows; 0 if none.
         """
     @property
     def share_beyond(self) -> float:
         """
-        Of the rows beyond 3; NaN of a noise that is none or at its floor.
+        Share of the rows beyond 3; NaN of a noise that is none or at its floor.
         """
 
 class OutputValidation:
@@ -2066,7 +2066,7 @@ class Comparison:
     @property
     def file(self) -> str:
         """
-        Of the flight.
+        File of the flight.
         """
     @property
     def json(self) -> str: ...
@@ -2112,12 +2112,12 @@ class Comparison:
     @property
     def status(self) -> str:
         """
-        Of the calibration, repeated.
+        Status of the calibration, repeated.
         """
     @property
     def text(self) -> str:
         """
-        What print() shows: the app's page.
+        The app's page, as print() shows it.
         """
     @property
     def time(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2367,7 +2367,7 @@ class EffectFinding:
 
 class Advice:
     """
-    What to add, once a fit with it has shown that it can be.
+    Effects to add, once a fit with them has shown that they can be.
     """
 
     _fields: typing.ClassVar[tuple] = ("effect", "withheld", "then")
@@ -2602,7 +2602,7 @@ class ErrorBound:
 
 class DiagnosisWork:
     """
-    What a diagnosis did.
+    The work of a diagnosis.
     """
 
     _fields: typing.ClassVar[tuple] = (
@@ -2688,7 +2688,7 @@ class Injection:
     @property
     def sizes(self) -> list[float]:
         """
-        Of its coefficients.
+        Sizes of its coefficients.
         """
 
 class StepwiseStep:
@@ -3041,7 +3041,7 @@ class ParameterChange:
     @property
     def name(self) -> str:
         """
-        Of the parameter.
+        Name of the parameter.
         """
     @property
     def rivals(self) -> tuple[str, ...]:
@@ -3051,7 +3051,7 @@ class ParameterChange:
     @property
     def standard_deviation(self) -> float:
         """
-        Of after - before.
+        Standard deviation of after - before.
         """
 
 class Change:
@@ -3102,7 +3102,7 @@ class Change:
     @property
     def statistic(self) -> float:
         """
-        What it explains: chi squared, of one degree a parameter, where nothing jumped.
+        The chi squared that it explains, of one degree a parameter where nothing jumped.
         """
 
 class Track:
@@ -3215,7 +3215,7 @@ class FlightTrackOptions:
 
 class Innovation:
     """
-    What a measurement brought that was not expected.
+    A measurement less its prediction, and its covariance.
     """
 
     _fields: typing.ClassVar[tuple] = ("count", "e", "w", "root")
@@ -3397,7 +3397,7 @@ class HistoryEntry:
 
 class Applied:
     """
-    What apply_to_file() did.
+    The result of apply_to_file().
     """
 
     _fields: typing.ClassVar[tuple] = ("rows", "rows_left_empty", "headers", "notes")
@@ -3445,7 +3445,7 @@ class FlightDeparture:
     @property
     def p(self) -> float:
         """
-        Of a larger difference by chance, by Holm for the number of flights.
+        Probability of a larger difference by chance, by Holm for the number of flights.
         """
     @property
     def parameter(self) -> str:
@@ -3693,7 +3693,7 @@ class LogNote:
 
 class FlightCheck:
     """
-    What a log is, and what that does to a calibration.
+    A log's description, and what each problem does to a calibration.
     """
 
     _fields: typing.ClassVar[tuple] = (
@@ -3725,7 +3725,7 @@ class FlightCheck:
     @property
     def file(self) -> str:
         """
-        Of the flight.
+        File of the flight.
         """
     @property
     def json(self) -> str: ...
@@ -3744,12 +3744,12 @@ class FlightCheck:
     @property
     def refused(self) -> str:
         """
-        What a fit would refuse it with; empty: it would not.
+        A fit's refusal of it; empty: it would not refuse.
         """
     @property
     def text(self) -> str:
         """
-        What print() shows: the app's page.
+        The app's page, as print() shows it.
         """
 
 class Approximation:
@@ -3810,7 +3810,7 @@ class Approximation:
     @property
     def residual_after(self) -> float:
         """
-        Of what the vehicle holds.
+        Residual of what the vehicle holds.
         """
     @property
     def residual_before(self) -> float:
@@ -3837,7 +3837,7 @@ class Approximation:
 
 class Exported:
     """
-    What export() wrote.
+    The result of export().
     """
 
     _fields: typing.ClassVar[tuple] = (
@@ -3878,12 +3878,12 @@ class Exported:
     @property
     def notes(self) -> list[str]:
         """
-        What a person must know or do, one line each.
+        Notes on what a person must know or do, one line each.
         """
     @property
     def other_approximation(self) -> Approximation | None:
         """
-        What the other one would lose; None where that is not known.
+        The loss of the other one; None where it is not known.
         """
     @property
     def output(self) -> str:
@@ -3893,17 +3893,17 @@ class Exported:
     @property
     def page(self) -> str:
         """
-        What print() shows: the app's page.
+        The app's page, as print() shows it.
         """
     @property
     def parameters(self) -> dict[str, float]:
         """
-        Of an autopilot, by name.
+        Parameters of an autopilot, by name.
         """
     @property
     def rotation(self) -> str | None:
         """
-        Of a magnetometer that the calibration turns: keep or refit, else None.
+        For a magnetometer that the calibration turns: keep or refit, else None.
         """
     @property
     def text(self) -> str:
@@ -3990,7 +3990,7 @@ class Departure:
     @property
     def p(self) -> float:
         """
-        Of a larger one where nothing departs: F(k, rows x outputs - n).
+        Probability of a larger one where nothing departs: F(k, rows x outputs - n).
         """
     @property
     def p_holm(self) -> float:
@@ -4007,7 +4007,7 @@ class Departure:
     @property
     def standard_error(self) -> dict[str, float]:
         """
-        Of the difference.
+        Standard error of the difference.
         """
     @property
     def statistic(self) -> float:
@@ -4049,7 +4049,7 @@ class FlightFit:
     @property
     def message(self) -> str:
         """
-        Of that fit.
+        Message of that fit.
         """
     @property
     def name(self) -> str: ...
@@ -4112,7 +4112,7 @@ class ManyFit:
     @property
     def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        Of the shared parameters, in that order; NaN without a standard error.
+        Covariance of the shared parameters, in that order; NaN without a standard error.
         """
     @property
     def covariance_white(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -4171,7 +4171,7 @@ class ManyFit:
     @property
     def rows(self) -> int:
         """
-        Of all flights.
+        Rows of all flights.
         """
     @property
     def shared(self) -> dict[str, Parameter]:
@@ -4186,7 +4186,7 @@ class ManyFit:
     @property
     def unobservable(self) -> list[Combination]:
         """
-        Of the shared parameters.
+        Unobservable combinations of the shared parameters.
         """
     @property
     def weak(self) -> list[Combination]: ...

@@ -17,10 +17,10 @@ Equations = Mapping[str, Sequence[str]]
 
 
 class AircraftModel(Protocol):
-    """What fit() and two_step() lay along a flight: Aero, RigidAircraft, FlightPath."""
+    """A model that fit() and two_step() take: Aero, RigidAircraft, FlightPath."""
 
     def _aircraft_options(self) -> dict[str, Any]:
-        """Of sepcal._states.Options, all but those of the fit."""
+        """The fields of sepcal._states.Options but those of the fit."""
 
 
 @checked
@@ -36,10 +36,10 @@ class Aero:
         *coefficients: Which of CX CY CZ Cl Cm Cn to fit, each on its standard regressors [all].
         equations: {coefficient: [regressors]} in their place: {"Cm": ["1", "alpha", "q_hat",
             "elevator", "alpha^2"]}.
-        window: Of the local cubic that differentiates p, q and r [s]; 0: seven rows.
+        window: Window of the local cubic that differentiates p, q and r [s]; 0: seven rows.
         band: (low, high) of the frequencies over which it is fitted [Hz], (0.1, 2) for what a
             rigid aircraft does [row by row in time].
-        spacing: Of these frequencies [Hz]; 0: one over the length of a segment.
+        spacing: Step between these frequencies [Hz]; 0: one over the length of a segment.
 
     Example:
         >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
@@ -99,7 +99,8 @@ class RigidAircraft:
         equations: {coefficient: [regressors]} [the standard ones of the axes; these also of
             coefficients that are not named].
         gravity: At the place of the flight [m/s^2].
-        window: Of the local cubic that differentiates rates for the start [s]; 0: seven rows.
+        window: Window of the local cubic that differentiates rates for the start [s]; 0: seven
+            rows.
         band: (low, high) of the frequencies over which it is fitted [Hz], linear about the flight's
             means, without biases or initial states [in time].
         **options: TrajectoryOptions; `measured` and `outputs` are the axes' own where left out.
@@ -150,7 +151,7 @@ class RigidAircraft:
 
 
 def standard_regressors(coefficient: str) -> list[str]:
-    """Of one of CX CY CZ Cl Cm Cn, S 6.8 to 6.13. Raises Error for another name."""
+    """The regressors of CX, CY, CZ, Cl, Cm or Cn, S 6.8 to 6.13. Raises Error for another name."""
     return list(states_module().standard_regressors(coefficient))
 
 

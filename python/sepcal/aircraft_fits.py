@@ -107,12 +107,12 @@ class AircraftFit(Fit):
 
     @property
     def notes(self) -> list[str]:
-        """What was dropped or assumed, one line each, for people."""
+        """Notes on what was dropped or assumed, one line each, for people."""
         return self.core.notes
 
     @property
     def warning(self) -> str:
-        """What is not in the intervals; empty where nothing is known."""
+        """Errors that the intervals leave out; empty if none is known."""
         return self.core.warning
 
     def _summary(self) -> str:
@@ -151,7 +151,7 @@ class AircraftFit(Fit):
     def residuals(
         self, flight: AnyFlight | Sequence[AnyFlight] | None = None
     ) -> dict[str, Array | list[str]]:
-        """What the model leaves on a flight, row by row, as `sepcal aircraft residuals` writes it.
+        """The residuals on a flight, row by row, as `sepcal aircraft residuals` writes them.
 
         Arrays by header, of shape (rows,), rows being the flight's: time_s, and of each output
         what was measured and modelled and the residual in its unit, ax_residual_mps2, and
@@ -233,15 +233,15 @@ class AircraftFit(Fit):
             inject: One effect with its size (or one a coefficient) that is put into the
                 measurements first, to see whether it would have been found.
             auto: Adds what is advised, fits and asks again, until nothing passes.
-            most: Of auto: at most so many effects [no limit].
+            most: With auto: the largest number of effects [no limit].
             only: The candidates, in place of those that are known.
-            simulations: Of the noise, that calibrate a test.
-            seed: Of these simulations.
-            pse: What bounds the noise in the candidates' predicted square error: half the variance
+            simulations: How many simulations of the noise calibrate a test.
+            seed: The seed of these simulations.
+            pse: The noise bound in the candidates' predicted square error: half the variance
                 of what is measured, as SIDPAC has it, or all of it.
-            rule: What decides: all that a verdict asks, or stepwise regression's partial F, one
-                candidate at a time from 20 on, residuals taken for white.
-            error_budget: How far each error of an instrument wanders at most, in its unit, where
+            rule: How to decide: by all that a verdict asks, or by stepwise regression's partial F,
+                one candidate at a time from 20 on, residuals taken for white.
+            error_budget: How far each error of an instrument drifts at most, in its unit, where
                 you know it, by the names that `Diagnosis.error_budget` has.
             within: Answers within so many seconds [no limit]; `Diagnosis.left_undone` says what
                 there was no time for.
@@ -326,7 +326,7 @@ class AircraftFit(Fit):
         by filter error with its process noise), with this fit's options and what it holds.
 
         Args:
-            inputs: What multisines() and three_two_one_one() make; or time_s and columns by the
+            inputs: The result of multisines() or three_two_one_one(); or time_s and columns by the
                 log's headers, which add to what the first row has.
             flight: Where the aircraft begins: its first row, and this fit's initial state there.
 
@@ -377,7 +377,7 @@ class AircraftFit(Fit):
     def apply(
         self, flight: AnyFlight | None = None, *, process_noise: Mapping[str, float] | None = None
     ) -> dict[str, Array]:
-        """What was flown, by header, each of shape (rows,).
+        """The corrected readings and modelled outputs by header, each of shape (rows,).
 
         Of every model the outputs as modelled, `alpha_model_rad`. Of a path also readings
         corrected, `ax_cal_mps2`, `alpha_cal_rad`, the velocity through the air, `u_mps`, and with
@@ -386,7 +386,7 @@ class AircraftFit(Fit):
 
         Args:
             flight: By default the fitted one.
-            process_noise: As of smooth().
+            process_noise: As in smooth().
 
         Example:
             >>> flight = sepcal.datasets.load("aircraft")
@@ -467,20 +467,20 @@ class AircraftFit(Fit):
             flight: By default the fitted one, which needs start_rows.
             start_rows: Fits so many first rows and goes on after them; 0: from this fit, which must
                 be of another flight.
-            method: As of sepcal.track().
+            method: As in sepcal.track().
             noise: Standard deviation of every output, in the first rows too [the start's].
-            process_noise: As of smooth(); those not named are none.
-            walk: Random walks of parameters, as of sepcal.track().
-            changes: "find" or "follow" parameters that jump, as of sepcal.track().
+            process_noise: As in smooth(); those not named are none.
+            walk: Random walks of parameters, as in sepcal.track().
+            changes: "find" or "follow" parameters that jump, as in sepcal.track().
             initial_states: Standard deviations of states where a segment begins [as good as
                 unknown].
-            row_iterations: Of iekf, at most so many a row.
-            tolerance: Of iekf.
-            forgetting: What a sample counts for after the next, above 0, at most 1.
-            memory: As of sepcal.track().
-            every: Of rml: samples from a step of the parameters to the next.
-            band: Of rft, as of sepcal.track().
-            spacing: Of rft.
+            row_iterations: For iekf: the largest number in a row.
+            tolerance: For iekf.
+            forgetting: Forgetting factor, above 0, at most 1: multiplies older rows' weights.
+            memory: As in sepcal.track().
+            every: For rml: the number of samples between steps of the parameters.
+            band: For rft, as in sepcal.track().
+            spacing: For rft.
 
         Raises:
             Error: The fit's own flight without start_rows, whose rows must not count twice; rows
@@ -534,7 +534,7 @@ class AircraftFit(Fit):
                 "ellipses" of the pairs that are correlated most; with process noise "states",
                 "innovations" and "process noise".
             flight: By default the fitted one.
-            process_noise: As of smooth() [of a fit by filter error what it found].
+            process_noise: As in smooth() [of a fit by filter error what it found].
             backend: "plotly", or "matplotlib".
             theme: "light" or "dark".
 
@@ -588,7 +588,7 @@ class AircraftFit(Fit):
         report(self, file, flight, **options)
 
     def _units_on(self, flight: Flight) -> dict[str, str]:
-        """Of the parameters and, where the flight has all outputs, of these."""
+        """Units of the parameters and, if the flight has all outputs, of these."""
         known = {name: parameter.unit for name, parameter in self.parameters.items()}
         try:
             outputs = self.core.compare(flight._core).overall
@@ -685,7 +685,7 @@ class TwoSteps(Page):
 
     @property
     def text(self) -> str:
-        """What print() shows: the app's page."""
+        """The app's page, as print() shows it."""
         return self._page
 
     def to_json(self) -> str:
@@ -725,22 +725,22 @@ class TwoSteps(Page):
             flight: By default the fitted one, which needs start_rows.
             start_rows: Fits so many first rows and goes on after them; 0: from these steps, which
                 must be of another flight.
-            method: Of the path, as of sepcal.track().
-            second: Of the coefficients.
+            method: For the path, as in sepcal.track().
+            second: The method for the coefficients.
             noise: Standard deviations of the path's outputs [the start's].
-            process_noise: Of the path, {"ax": sd, ...} [that of the readings].
+            process_noise: For the path, {"ax": sd, ...} [that of the readings].
             walk: Random walks of parameters of either step; coefficients walk by ekf and srif.
             changes: "find" or "follow" coefficients that jump, by ekf and srif.
-            forgetting: Of the second step, as the three that follow.
-            memory: As of sepcal.track().
-            band: Of rft.
-            spacing: Of rft.
+            forgetting: For the second step, as are the next three.
+            memory: As in sepcal.track().
+            band: For rft.
+            spacing: For rft.
 
         Returns:
             A Track: states and parameters of the path, then the coefficients' terms.
 
         Raises:
-            Error: As of AircraftFit.track().
+            Error: As in AircraftFit.track().
 
         Example:
             >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
@@ -818,7 +818,7 @@ def _seconds(flight: Flight) -> Array | None:
 
 
 def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> AircraftFit:
-    """Of a flight path or an aircraft; fit() calls it."""
+    """Fits a flight path or an aircraft; fit() calls it."""
     core = states_module().fit(flight._core, _core_options(model, options))
     return AircraftFit(core, flight)
 
@@ -826,7 +826,7 @@ def fit_flight(model: AircraftModel, flight: Flight, options: FitOptions) -> Air
 def fit_flights(
     model: AircraftModel, flights: Sequence[AnyFlight], options: FitOptions
 ) -> AircraftFit:
-    """Of several flights together, each with initial states of its own; fit_jointly() calls it."""
+    """Fits several flights together, each with its own initial states; fit_jointly() calls it."""
     given = [to_flight(one, "fit_jointly(model, [", "", options)._core for one in flights]
     laid = _core_options(model, options)
     joined = Flight._of(states_module().join(given, to_core(options), None))
@@ -851,7 +851,7 @@ def two_step(
         aircraft: Its dimensions, mass and inertia.
         equations: {coefficient: [regressors]} of the second step [the standard ones, all six].
         path: How the first step is laid along the flight.
-        window: Of the local cubic that differentiates rates [s]; 0: seven rows.
+        window: Window of the local cubic that differentiates rates [s]; 0: seven rows.
         **options: FitOptions.
 
     Returns:

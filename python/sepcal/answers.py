@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a model in Python gives of N points: arrays, or nested lists of arrays and of numbers."""
+"""Answers of a model in Python for N points: arrays, or nested lists of arrays and numbers."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What crosses the front: an argument of the wrong kind is refused in one line that names it."""
+"""Checks arguments: one of the wrong kind is refused in one line that names it."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Missing(_core.Error, KeyError):
 
 
 def found_by(find: Callable[[str], Found], name: object) -> Found:
-    """What stands under a name. Raises Missing, as `find` says it by a KeyError."""
+    """The value under a name. Raises Missing, as `find` says it by a KeyError."""
     if not isinstance(name, str):
         raise Missing(f"{shown(name)} is no name; give a text")
     try:

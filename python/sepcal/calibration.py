@@ -81,7 +81,7 @@ class Calibration(Fit):
 
     @property
     def derived(self) -> dict[str, _core.Derived]:
-        """What follows: of a Pitot-static tube lambda_va and b_va, which correct the reading."""
+        """Derived quantities: a Pitot-static tube's lambda_va, b_va, which correct the reading."""
         return self.core.derived
 
     def __getitem__(self, name: str) -> _core.Parameter:
@@ -102,7 +102,7 @@ class Calibration(Fit):
 
     @property
     def departures(self) -> dict[str, _core.FlightDeparture]:
-        """Of a joint fit: whether a flight, by its label, agrees with the others."""
+        """For a joint fit: whether a flight, by its label, agrees with the others."""
         return {one.flight: one for one in self.core.departures}
 
     def departed(self, level: float = 0.01) -> list[str]:
@@ -123,7 +123,7 @@ class Calibration(Fit):
 
     @property
     def notes(self) -> list[str]:
-        """What was dropped or ignored, one line each, for people."""
+        """Notes on what was dropped or ignored, one line each, for people."""
         return self.core.notes
 
     def _summary(self) -> str:
@@ -171,7 +171,7 @@ class Calibration(Fit):
     def residuals(
         self, flight: AnyFlight | Sequence[AnyFlight] | None = None
     ) -> dict[str, Array | list[str]]:
-        """What the model leaves on a flight, row by row, as `sepcal mag residuals` writes it.
+        """The residuals on a flight, row by row, as `sepcal mag residuals` writes them.
 
         Arrays by header, of shape (rows,), rows being the flight's: time_s, and of each output
         what was measured and modelled and the residual in its unit, mx_residual_ut, and
@@ -218,16 +218,16 @@ class Calibration(Fit):
             own: With start_rows, parameters of the flight alone, as "wind", all of its components;
                 all others begin as this calibration has them, of another flight. None: the rows
                 alone tell.
-            method: As of sepcal.track().
+            method: As in sepcal.track().
             noise: Standard deviation of every output, in the first rows too [the start's].
-            walk: Random walks of parameters, as of sepcal.track().
-            changes: "find" or "follow" parameters that jump, as of sepcal.track().
-            row_iterations: Of iekf, at most so many a row.
-            tolerance: Of iekf.
-            forgetting: What a sample counts for after the next, above 0, at most 1.
-            memory: As of sepcal.track().
-            band: Of rft, as of sepcal.track().
-            spacing: Of rft.
+            walk: Random walks of parameters, as in sepcal.track().
+            changes: "find" or "follow" parameters that jump, as in sepcal.track().
+            row_iterations: For iekf: the largest number in a row.
+            tolerance: For iekf.
+            forgetting: Forgetting factor, above 0, at most 1: multiplies older rows' weights.
+            memory: As in sepcal.track().
+            band: For rft, as in sepcal.track().
+            spacing: For rft.
 
         Raises:
             Error: The calibration's own flight without start_rows, whose rows must not count twice;
@@ -324,15 +324,15 @@ class Calibration(Fit):
             inject: One effect with its size (or one a coefficient) that is put into the
                 measurements first, to see whether it would have been found.
             auto: Adds what is advised, fits and asks again, until nothing passes.
-            most: Of auto: at most so many effects [no limit].
+            most: With auto: the largest number of effects [no limit].
             only: The candidates, in place of those that are known.
-            simulations: Of the noise, that calibrate a test.
-            seed: Of these simulations.
-            pse: What bounds the noise in the candidates' predicted square error: half the variance
+            simulations: How many simulations of the noise calibrate a test.
+            seed: The seed of these simulations.
+            pse: The noise bound in the candidates' predicted square error: half the variance
                 of what is measured, as SIDPAC has it, or all of it.
-            rule: What decides: all that a verdict asks, or stepwise regression's partial F, one
-                candidate at a time from 20 on, residuals taken for white.
-            error_budget: How far each error of an instrument wanders at most, in its unit, where
+            rule: How to decide: by all that a verdict asks, or by stepwise regression's partial F,
+                one candidate at a time from 20 on, residuals taken for white.
+            error_budget: How far each error of an instrument drifts at most, in its unit, where
                 you know it, by the names that `Diagnosis.error_budget` has.
             within: Answers within so many seconds [no limit]; `Diagnosis.left_undone` says what
                 there was no time for.

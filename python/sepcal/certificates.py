@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What can be proven of a fit's cost: that no other minimum is lower, or how much lower it can be.
+"""Proves that no other minimum is lower than a fit's cost, or how much lower it can be.
 
 By interval arithmetic through the model itself: no rounding, no sample and no solver is trusted.
 """
@@ -20,7 +20,7 @@ from sepcal.results import Fit
 
 
 class Certificate(_core.Certificate):
-    """What is proven of a fit's cost in the box of its bounds; `print(certificate)` says it.
+    """A proof about a fit's cost in the box of its bounds; `print(certificate)` says it.
 
     Example:
         >>> eta = np.linspace(-3.0, 3.0, 40)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a log is, before anything is fitted, and what that does to a calibration from it."""
+"""Describes a log before anything is fitted, and what each problem does to a calibration."""
 
 from __future__ import annotations
 
@@ -113,14 +113,14 @@ def check(
     delimiter: str = "",
     decimal: str = "",
 ) -> FlightCheck:
-    """What a log is, column by column, and what that does to a calibration from it.
+    """Describes a log, column by column, and what each problem does to a calibration.
 
     Nothing is fitted, and a log that a fit would refuse is described all the same.
 
     Args:
         model: A probe, a FlightPath, Aero or RigidAircraft, or a model of your own, as for the fit.
         flight: The log, or what read() makes a flight of.
-        map: Of what a fit is to take of the log, as its options: columns under other headers.
+        map: How a fit is to read the log, as its options: columns under other headers.
         ignore: Likewise, columns that are not looked at.
         where: Likewise, a condition that rows are to fulfil.
         from_time: Likewise [s].
@@ -128,7 +128,7 @@ def check(
         drop_invalid: Likewise, of rows with a cell that is no number.
         drop_repeats: Likewise, of rows between the samples of these columns.
         join: Likewise, of quantities that are logged at other times.
-        delimiter: Of a file, as of read().
+        delimiter: For a file, as in read().
         decimal: Likewise.
 
     Returns:

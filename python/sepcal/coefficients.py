@@ -15,16 +15,16 @@ from sepcal.states_module import states_module
 
 @dataclass(frozen=True)
 class AeroCoefficients:
-    """What aero_coefficients() found.
+    """The result of aero_coefficients().
 
     Attributes:
         columns: {name: (N,)}: those given, airspeed, alpha and beta moved to the centre of gravity,
             the coefficients and, where there are rates, p_hat, q_hat, r_hat, and pdot, qdot, rdot
             [rad/s^2]. NaN outside the segments.
         names: The coefficients that were computed.
-        window: Of the local cubic that differentiated the rates [s]; NaN where pdot, qdot, rdot
-            were given.
-        notes: What must be known to read them, a sentence each.
+        window: Window of the local cubic that differentiated the rates [s]; NaN where pdot, qdot,
+            rdot were given.
+        notes: Notes on how to read them, a sentence each.
 
     Example:
         >>> size = {"area": 16.2, "chord": 1.49, "span": 10.9}
@@ -58,9 +58,9 @@ def aero_coefficients(
             flight reads az = -9.81); `p q r`; `airspeed`, `alpha`, `beta` at aircraft.vane; `rho`
             or `qbar`. Where there are: `thrust` [N], `mass` [kg], `pdot qdot rdot`, `maneuver`.
             Only what the chosen coefficients need is asked for.
-        aircraft: What flew.
+        aircraft: The aircraft that flew.
         coefficients: Which [all six].
-        window: Of the local cubic that differentiates p, q and r [s]; 0: seven rows.
+        window: Window of the local cubic that differentiates p, q and r [s]; 0: seven rows.
 
     Raises:
         Error: What is missing, with the way out; degrees; a vertical acceleration that is no

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What can be typed after Python's commands, as apps/tables.hpp has it of the native ones."""
+"""The options of Python's commands, as apps/tables.hpp has those of the native ones."""
 
 from __future__ import annotations
 

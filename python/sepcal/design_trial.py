@@ -40,7 +40,7 @@ class DesignTrial:
         truth: Every parameter's value by name.
         scatter: Standard deviation of each output's noise by name; one number for all of them. (The
             option `noise` is what a fit is told of it.)
-        stirred: Of a model with a state: noise that drives it, by the names of its table `noise`,
+        stirred: For a model with a state: noise that drives it, by the names of its table `noise`,
             as roots of spectral densities in the table's unit; those not named are none. (The
             option `process_noise` is what a fit is told of it.)
         **options: Keyword arguments of sepcal.fit(); threads is 1 by default.
@@ -151,7 +151,7 @@ class DesignTrial:
         )
 
     def together(self, rngs: Sequence[Generator]) -> list[Estimates | None]:
-        """What a study keeps of the trial of each generator; None where it fails.
+        """The record of each generator's trial that a study keeps; None where it fails.
 
         Example:
             >>> wave, design = sepcal.ScalarExample1(), {"eta": np.linspace(-3.0, 3.0, 40)}

@@ -55,7 +55,7 @@ class Diagnosis(Page, _core.Diagnosis):
 
     @property
     def explanations(self) -> list[str]:
-        """What stands first and what would do as well instead; none where nothing stands out."""
+        """The first effect and those that would do as well; none if nothing stands out."""
         first = [e.name for e in self.effects[:1] if e.status in STANDS_OUT]
         return [*first, *self.list_beside("equivalent")]
 

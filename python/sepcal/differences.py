@@ -40,7 +40,7 @@ class Fan:
 
 @dataclass(frozen=True)
 class Seeds:
-    """What derivatives are taken by: the states, then some of p; or nothing, with K = 1."""
+    """The variables of the derivatives: the states, then some of p; or none, with K = 1."""
 
     fan: Fan
     states: int  # of the fan's quantities
@@ -49,5 +49,5 @@ class Seeds:
 
 
 def step_sizes(values: Array) -> Array:
-    """Of differences: powers of two, so that moved by it a number is exact."""
+    """Steps of differences: powers of two, so that a number moved by one is exact."""
     return np.ldexp(STEP, np.frexp(np.maximum(1.0, np.abs(values)))[1])

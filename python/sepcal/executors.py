@@ -65,7 +65,7 @@ def stream(
         batch: Items a task.
         pending: Tasks that are submitted and not done, at most.
         attempts: To run an item, in all.
-        lost: What to yield for an item that was lost in every attempt, given the last exception.
+        lost: Makes the result for an item that was lost in every attempt, given the last exception.
 
     Raises:
         Error: An argument is none of these; an item was lost in every attempt and there is no
@@ -122,7 +122,7 @@ class _Task(Generic[Item]):
 
 
 class _Work(Generic[Item]):
-    """What is to be run: first what was lost, then what is new, at last what is suspect, alone."""
+    """Items to run: first those that were lost, then new ones, last suspect ones, each alone."""
 
     def __init__(self, items: Iterable[Item], batch: int, attempts: int) -> None:
         self.attempts = attempts

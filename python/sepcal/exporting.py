@@ -17,7 +17,7 @@ Target = Literal["c", "cpp", "px4", "ardupilot"]
 
 
 class Exported(_core.Exported):
-    """What was written, and what the vehicle's correction lacks; print() shows the page.
+    """The result of export(): what was written and what the vehicle's correction lacks.
 
     Example:
         >>> flight = sepcal.datasets.load("magnetometer")
@@ -79,26 +79,28 @@ def export(
     the flight, and `loss` says what that costs.
 
     Args:
-        calibration: Of a magnetometer, a Pitot-static tube or, for a header, a five-hole probe.
+        calibration: Calibration of a magnetometer, a Pitot-static tube or, for a header, a
+            five-hole probe.
         file: To write.
         to: "c" or "cpp", a header with the whole correction; "px4" or "ardupilot", parameters.
         flight: To fit anew and to compare on [the one that was fitted].
         sensor: Which, as the autopilot counts [its first]; of a header, its names end so.
-        device_id: Of PX4, the sensor's CAL_MAGn_ID, or the pressure sensor's id, which says its
+        device_id: For PX4, the sensor's CAL_MAGn_ID, or the pressure sensor's id, which says its
             kind.
-        mounting: Of PX4, roll, pitch, yaw [deg] by which the flight's readings were turned, for
+        mounting: For PX4, roll, pitch, yaw [deg] by which the flight's readings were turned, for
             CAL_MAGn_ROT.
-        in_use: Of a logged airspeed, the ARSPD_RATIO or ASPD_SCALE_n that it was read with.
-        logged_airspeed: What it is: "true", or "equivalent", which autopilots call indicated.
-        airspeed_sensor: Of a tube, "membrane" or "sdp3x" (SDP31, 32, 33) [by device_id or the log].
-        cal_air: Of PX4 with an SDP3x, its CAL_AIR_CMODEL, CAL_AIR_TUBELEN [m] and CAL_AIR_TUBED_MM
+        in_use: For a logged airspeed, the ARSPD_RATIO or ASPD_SCALE_n in use then.
+        logged_airspeed: Its kind: "true", or "equivalent", which autopilots call indicated.
+        airspeed_sensor: For a tube, "membrane" or "sdp3x" (SDP31, 32, 33) [by device_id or the
+            log].
+        cal_air: For PX4 with an SDP3x, its CAL_AIR_CMODEL, CAL_AIR_TUBELEN [m] and CAL_AIR_TUBED_MM
             [mm] [the log's, else 0, 0.2, 1.5].
         without: Effects to leave out; the rest is fitted anew.
         force: Exports also what did not converge, is not all determined, or is at a bound.
-        rotation: Of a magnetometer for an autopilot, which can't turn it: "keep", the calibration
+        rotation: For a magnetometer on an autopilot, which can't turn it: "keep", the calibration
             as it is less its rotation, or "refit", the symmetric matrix that fits the flight best
             [the better by its largest error of heading; without a flight "keep"].
-        single: Of a header: it computes in float, for a processor that has no double.
+        single: For a header: it computes in float, for a processor without double.
 
     Raises:
         Error: A calibration that no vehicle should load, an effect that the vehicle can't follow, a

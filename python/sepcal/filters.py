@@ -41,8 +41,9 @@ class SmoothedPass:
 
     Attributes:
         x: (N, n_x).
-        covariance: Of x, (N, n_x, n_x).
-        noise: Of the steps between samples, (N - 1, n_w): where it is large the model fails.
+        covariance: Covariance of x, (N, n_x, n_x).
+        noise: Process noise of the steps between samples, (N - 1, n_w): where it is large the model
+            fails.
         noise_covariance: (N - 1, n_w, n_w).
 
     Example:
@@ -108,7 +109,7 @@ class Filter:
         keep_pass: Remember every step, n_x^2 numbers each, for smooth().
 
     Attributes:
-        log_likelihood: Of all outputs so far, the sum of ln p(e), S 5.4.
+        log_likelihood: Log likelihood of all outputs so far, the sum of ln p(e), S 5.4.
 
     Example:
         >>> level = sepcal.Filter(x=[0.0], P=[[100.0]])
@@ -179,7 +180,7 @@ class Filter:
             Phi: (n_x, n_x); of a nonlinear system the derivative of the next state by this one.
             Q: Covariance of the noise between the samples, (n_w, n_w): a density's integral.
             Gamma: Where the noise enters, (n_x, n_w) [the identity].
-            shift: What inputs add, (n_x,) [nothing].
+            shift: The share of the inputs, (n_x,) [zero].
             x: The next state of a nonlinear system, (n_x,), in place of Phi x + shift.
 
         Raises:
@@ -222,13 +223,13 @@ class Filter:
             y: (n_z,); NaN where an output is missing, which is left out exactly.
             H: (n_z, n_x); of nonlinear outputs their derivative.
             R: Covariance of the measurement's noise, (n_z, n_z).
-            expected: What was expected of y, (n_z,) [H x].
+            expected: The prediction of y, (n_z,) [H x].
 
         Returns:
             The innovation: e, w, root, covariance, count, cost.
 
         Raises:
-            Error: As of predict().
+            Error: As in predict().
 
         Example:
             >>> level = sepcal.Filter(x=[0.0], P=[[1.0]])
@@ -266,18 +267,18 @@ class Filter:
 
         Args:
             y: (n_z,); NaN where missing.
-            outputs: Of a state: what is expected of y there, (n_z,), and its slope, (n_z, n_x).
+            outputs: Function of a state: the prediction of y, (n_z,), and its slope, (n_z, n_x).
             R: Covariance of the measurement's noise, (n_z, n_z).
             iterations: At most so many.
-            tolerance: Of a step, in standard deviations of the state.
+            tolerance: The shortest step, in standard deviations of the state.
 
         Returns:
             The last iteration's innovation.
 
         Raises:
-            Error: As of predict(); and where the iterations ended by their cap: the filter then
+            Error: As in predict(); and where the iterations ended by their cap: the filter then
                 holds the last one's state.
-            Exception: What `outputs` raises, as it is; the filter is as it was.
+            Exception: Whatever `outputs` raises; the filter is as it was.
 
         Example:
             >>> place = sepcal.Filter(x=[3.0], P=[[100.0]])

@@ -68,7 +68,7 @@ def fit(
     Raises:
         Error: Bad input or misuse: one line that names the culprit and the way out.
         TypeError: An option that there isn't, or of the wrong kind.
-        Exception: What at() of a model in Python raises, as it is.
+        Exception: Whatever at() of a model in Python raises.
 
     Example:
         >>> flight = sepcal.datasets.load("pitot")

@@ -76,7 +76,7 @@ class Flight(Mapping[str, Array]):
             or polars, an Arrow table, an xarray Dataset. A column "maneuver" holds labels, as in a
             file. Dates, also of an index, become time_s, seconds since midnight UTC of the first.
         maneuver: A label a row, N of them; a run of one label is a segment.
-        name: What messages call the flight.
+        name: The flight's name in messages.
 
     Raises:
         Error: A column of another length, without a name, not one-dimensional or not of numbers; a
@@ -127,7 +127,7 @@ class Flight(Mapping[str, Array]):
 
     @property
     def sha256(self) -> str:
-        """Of the file's bytes, 64 hexadecimal digits; empty for arrays."""
+        """SHA-256 of the file's bytes, 64 hexadecimal digits; empty for arrays."""
         return self._core.sha256
 
     @property
@@ -142,7 +142,7 @@ class Flight(Mapping[str, Array]):
 
     @property
     def notes(self) -> list[str]:
-        """What its reader decided about the file, one line each."""
+        """The decisions of the file's reader, one line each."""
         return self._core.notes
 
     @property
@@ -297,9 +297,9 @@ def read(
         data: A file's name: CSV, Parquet, Arrow or Feather, HDF5, .mat, .xlsx, MCAP, IGC, NMEA
             0183, ULog or DataFlash, which is found by what is in it (docs/files.md); a DataFrame of
             pandas or polars, an Arrow table, an xarray Dataset, a dict; a Flight, as it is.
-        table: Of a file with several tables, whose rows are taken: a sheet, a group, a topic, a
+        table: In a file with several tables, the one to read: a sheet, a group, a topic, a
             sensor [the one that measures]. "FILE::TABLE" says the same.
-        delimiter: Of a table as text that can be read in two ways, what parts its columns: ",",
+        delimiter: Column separator of a text table that can be read in two ways: ",",
             ";", "|", "tab" or "space" [as the file shows].
         decimal: Likewise its decimal mark, "." or ",".
 
@@ -331,7 +331,7 @@ def read_csv(file: str | os.PathLike[str], delimiter: str = "", decimal: str = "
 
     Args:
         file: The table; of another form it is read as by read().
-        delimiter: What parts its columns, where it can be read in two ways: ",", ";", "|", "tab" or
+        delimiter: Column separator, if the file can be read in two ways: ",", ";", "|", "tab" or
             "space" [as the file shows].
         decimal: Its decimal mark, "." or "," [as the file shows].
 
@@ -360,8 +360,8 @@ def stream_csv(
     Args:
         file: The CSV; it may be a pipe.
         folder: Where the columns are written, in files without a name [$TMPDIR, or /tmp].
-        delimiter: As of read_csv().
-        decimal: As of read_csv().
+        delimiter: As in read_csv().
+        decimal: As in read_csv().
 
     Raises:
         Error: As read_csv(), and where the disc is full.
@@ -407,7 +407,7 @@ def to_flight_of(fitted: Fitted, flight: object, call: str) -> Flight:
 
 
 def kind_of(model: object) -> str:
-    """What files are read for, by a model or its name: MAGNETIC, AIR or nothing in particular."""
+    """The kind of reading that a model, or its name, needs: MAGNETIC, AIR or none."""
     return KINDS.get(model if isinstance(model, str) else type(model).__name__, "")
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class FrequencyResponse:
-    """What frequency_response() found; M frequencies, n inputs.
+    """The result of frequency_response(); M frequencies, n inputs.
 
     Attributes:
         inputs: Headers, n.
@@ -42,7 +42,7 @@ class FrequencyResponse:
         window: That was averaged [s].
         windows: How many.
         averages: Independent windows that these are worth, as they overlap by half.
-        notes: What was dropped, one line each.
+        notes: Notes on what was dropped, one line each.
 
     Example:
         >>> flight = sepcal.datasets.load("aircraft")
@@ -138,9 +138,9 @@ def frequency_response(
         inputs: One header or several, "elevator_rad".
         output: Another header, "q_radps".
         band: (low, high) [Hz].
-        spacing: Of the frequencies [Hz]; 0: one over the window.
+        spacing: Step between the frequencies [Hz]; 0: one over the window.
         window: [s]; 0: a fifth of the longest segment, at least two periods of the band's low end.
-        level: Of the ranges.
+        level: Confidence level of the ranges.
 
     Raises:
         Error: A column that is missing; a window that is too short for the band or too long for the

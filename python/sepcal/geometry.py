@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an aircraft is to its equations of motion."""
+"""An aircraft's geometry and mass, as its equations of motion need them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from sepcal.whole_files import name_of
 @checked
 @dataclass(frozen=True, kw_only=True)
 class Aircraft:
-    """What an aircraft is to its equations of motion.
+    """An aircraft's geometry and mass, as its equations of motion need them.
 
     Positions are in body axes, forward, right, down, from any one point of the aircraft.
 
     Attributes:
-        area: Of the wing [m^2].
+        area: Wing area [m^2].
         chord: Mean aerodynamic [m].
         span: [m].
         mass: [kg].
@@ -31,7 +31,7 @@ class Aircraft:
         cg: Centre of gravity [m].
         imu: Inertial unit [m].
         vane: Where airspeed, alpha and beta are read [m].
-        rate_reference: What makes the pitch rate a number, q_hat: q c/V or q c/2V. CX_q, CZ_q and
+        rate_reference: How the pitch rate becomes a number, q_hat: q c/V or q c/2V. CX_q, CZ_q and
             Cm_q of the first are half those of the second. Every result says which.
 
     Example:

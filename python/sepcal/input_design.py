@@ -31,8 +31,8 @@ class InputDesign:
         signals: {header: (N,)}; zero in the first row and in the last.
         frequencies: {header: (k,)} [Hz] of a multisine.
         peak_factors: {header: (max - min) / (2 sqrt(2) rms)} of a multisine, 1 of a single sine.
-        step: Of 3-2-1-1, how long a "1" lasts [s]; NaN of a multisine.
-        share_in_band: Of 3-2-1-1, of its energy; NaN of a multisine.
+        step: For 3-2-1-1, how long a "1" lasts [s]; NaN of a multisine.
+        share_in_band: For 3-2-1-1, the share of its energy in the band; NaN for a multisine.
 
     Example:
         >>> made = sepcal.multisines({"elevator_rad": 0.05}, duration=10)

@@ -117,11 +117,11 @@ class Intervals(Page, _core.Intervals):
 
 @checked
 class Prediction(_core.Prediction):
-    """What a fit says of N samples, in the outputs' units and the model's order of outputs.
+    """A fit's predictions of N samples, in the outputs' units and the model's order of outputs.
 
     Attributes:
         outputs: Their names; pickled they are lost.
-        units: Of outputs by name, as far as they are known; pickled they are lost.
+        units: Units of outputs by name, as far as they are known; pickled they are lost.
 
     Example:
         >>> flight = sepcal.datasets.load("pitot")
@@ -239,7 +239,7 @@ def predict(
     level: float = 0.95,
     **options: Unpack[FitOptions],
 ) -> Prediction:
-    """What a fit says of samples, with the bands of the value and of a new measurement.
+    """Predicts samples, with the bands of the value and of a new measurement.
 
     Args:
         model: That was fitted.

@@ -21,12 +21,12 @@ def join(flight: Flight, other: Flight, how: str = "smooth", offset: float = 0.0
 
     Args:
         flight: The log of the sensor that is calibrated: its rows stay.
-        other: Of the same flight, at other times.
-        how: What stands in a row: "smooth", a parabola fitted to the samples about it; "linear",
+        other: A log of the same flight, at other times.
+        how: The value in a row: "smooth", a parabola fitted to the samples about it; "linear",
             the straight line between two samples; "held", the earlier of them. A line has half the
             noise between two samples that it has at them, which pulls an estimate of the clocks'
             offset; a parabola has the same noise everywhere.
-        offset: What is added to the other log's time [s]. What is left of an offset is estimated by
+        offset: Seconds to add to the other log's time. The rest of an offset is estimated by
             the effect `time_offset`, whose tau is then added here.
 
     Raises:

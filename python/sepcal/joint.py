@@ -60,7 +60,7 @@ def fit_jointly(
             state shares all but its initial states.
         flights: Two or more, of different names. They need the same columns; what is not in all of
             them is left out. A flight is called by its file's name without folder and ending.
-        own: Parameters that every flight has for itself, "wind" for w_n, w_e, w_d; the others are
+        own: Parameters estimated per flight, "wind" for w_n, w_e, w_d; the others are
             shared.
         **options: Those of fit(). Bounds, a start and a prior of an own parameter hold for each
             flight's.

@@ -39,15 +39,15 @@ Sample = Callable[
 
 @dataclass(frozen=True)
 class LeastSquares:
-    """What iterate_least_squares() found.
+    """The result of iterate_least_squares().
 
     Attributes:
         status: "not_converged": iterations ended by their cap, or no step made the cost fall.
             "not_determined": the samples leave a parameter open.
         iterations: How many.
         p: (n,), S 4.8.
-        covariance: Of p, (n, n), where W is the noise's covariance, S 4.7; NaN where a parameter is
-            open.
+        covariance: Covariance of p, (n, n), where W is the noise's covariance, S 4.7; NaN where a
+            parameter is open.
         root: [R q; 0 rho], (n + 1, n + 1), of all samples about p: R'R is the information.
         count: Numbers that were there in all samples.
         cost: V(p), half the weighted sum of squares, S 4.5.
@@ -89,17 +89,17 @@ def iterate_least_squares(
     bounds and without a start, are sepcal.fit().
 
     Args:
-        sample: Of sample k at p: z = y - f(k, p), (m,), NaN where missing; H = df/dp, (m, n); and
-            W, the covariance of e, (m, m) [the identity].
+        sample: Function of sample k at p: z = y - f(k, p), (m,), NaN where missing; H = df/dp, (m,
+            n); and W, the covariance of e, (m, m) [the identity].
         count: Samples, k = 0 ... count - 1.
         p: Where it begins, (n,).
         iterations: At most so many.
-        tolerance: Of a step, in standard deviations of p.
+        tolerance: The shortest step, in standard deviations of p.
         halvings: At most so many of a step that makes the cost rise.
 
     Raises:
         Error: Another shape, what is not finite, a W that is not positive definite.
-        Exception: What `sample` raises, as it is.
+        Exception: Whatever `sample` raises.
 
     Example:
         >>> t = np.linspace(0.0, 2.0, 20)
@@ -154,9 +154,9 @@ class RecursiveLeastSquares:
     Args:
         p: The parameters to begin with, (n,); or how many there are, of which nothing is known
             before (with "square_root").
-        covariance: Of those to begin with, (n, n).
-        form: What is kept: the root of the information, the information itself (S 4.13), or its
-            inverse (S 4.14, corrected).
+        covariance: Covariance of the first estimate, (n, n).
+        form: What the recursion keeps: the root of the information, the information itself (S
+            4.13), or its inverse (S 4.14, corrected).
 
     Example:
         >>> line = sepcal.RecursiveLeastSquares(2)
@@ -234,7 +234,7 @@ class RecursiveLeastSquares:
 
     @property
     def covariance(self) -> Array:
-        """Of p, (n, n), where W is the noise's covariance; NaN where a parameter is open."""
+        """The covariance of p, (n, n), if W is the noise's; NaN where a parameter is open."""
         found = self._core.covariance
         return found if self.determined else np.full_like(found, np.nan)
 

@@ -64,7 +64,7 @@ def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
 
     Args:
         F: (n, n) [1/s].
-        density: Of w, G Q G', (n, n) [state^2/s].
+        density: Density of w, G Q G', (n, n) [state^2/s].
         dt: [s].
 
     Raises:
@@ -84,7 +84,7 @@ def discretise(F: ArrayLike, density: ArrayLike, dt: float) -> Transition:
 
 @dataclass(frozen=True)
 class DiscreteInputs:
-    """What inputs add to a state over a step of time.
+    """The share that inputs add to a state over a step of time.
 
     Attributes:
         held: (n_x, n_u): x(k+1) = Phi x(k) + held u(k).
@@ -104,7 +104,7 @@ class DiscreteInputs:
 
 @checked
 def discretise_inputs(F: ArrayLike, B: ArrayLike, dt: float) -> DiscreteInputs:
-    """What u adds to x' = F x + B u over a step of time. Held inputs lag linear ones by half of it.
+    """The share of u in x' = F x + B u over a step. Held inputs lag linear ones by half of it.
 
     Args:
         F: (n_x, n_x) [1/s].
@@ -159,7 +159,7 @@ def propagate(
 
     Raises:
         Error: Another shape, or what is not finite, also of what the functions give.
-        Exception: What the functions raise, as it is.
+        Exception: Whatever the functions raise.
 
     Example:
         >>> step = sepcal.propagate(lambda x, t: -x, [1.0], [[0.0]], 0.0, 0.1)

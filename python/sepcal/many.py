@@ -54,7 +54,7 @@ def fit_many(
         flights: A list, or a dict by name, of CSV files, Flights, or columns by the model's names.
             A worker reads a file itself, so that its name must mean the same to it. Files are
             called as they are named, others in a list "flight 0", "flight 1", ...
-        own: Parameters that every flight has for itself; the others are shared.
+        own: Parameters estimated per flight; the others are shared.
         executor: Where flights are visited: None: here, on `threads` threads; a
             concurrent.futures.Executor (Dask: client.get_executor()), which is left open; or a
             function that makes one, ProcessPoolExecutor itself. Work that a dying worker took
@@ -66,7 +66,7 @@ def fit_many(
     Raises:
         Error: Bad input or misuse: one line that names the flight, the culprit and the way out.
         TypeError: An option that there isn't, or of the wrong kind.
-        Exception: What at() of a model in Python raises, as it is.
+        Exception: Whatever at() of a model in Python raises.
 
     Example:
         >>> days = {
@@ -148,7 +148,7 @@ class _Visits:
 
 
 def _lose(question: Question, error: BaseException) -> object:
-    """What stands for a flight whose worker died of it, time and again."""
+    """Stands for a flight that killed its worker at every attempt."""
     reason = f"its worker dies of it, or is killed ({describe(error)})"
     if question.kind == "start":
         return unusable(reason), ""

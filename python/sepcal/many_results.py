@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a joint fit of many flights says. Undefined numbers are NaN."""
+"""The result of a joint fit of many flights. Undefined numbers are NaN."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class ManyFit(_core.ManyFit):
 
         Args:
             what: "departures", by how much a flight's own estimate of a shared parameter differs
-                from that of the others; "own", the parameters that every flight has for itself.
+                from that of the others; "own", the parameters estimated per flight.
             backend: "plotly", or "matplotlib".
             theme: "light" or "dark".
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What runs on a worker in a joint fit: one flight asked one thing.
+"""Work on a worker in a joint fit: one flight asked one thing.
 
 A worker reads its logs where they lie and keeps them prepared from one question to the next. One
 that has never seen a flight, since another died with it, prepares it then.
@@ -27,7 +27,7 @@ MOST_CELLS = 64_000_000  # numbers kept prepared in one process, 512 MB
 
 @dataclass(frozen=True)
 class Task:
-    """What is the same for every flight of a fit."""
+    """The part of a fit that is the same for every flight."""
 
     token: str  # a fit's own
     model: Model
@@ -37,7 +37,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Question:
-    """Of one flight."""
+    """One question to one flight."""
 
     task: Task
     index: int

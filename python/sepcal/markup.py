@@ -33,7 +33,7 @@ def in_figure(text: object) -> str:
 
 
 def as_read(text: str) -> str:
-    """What a figure's text shows, without its elements; <br> is a line's end."""
+    """A figure's text without its elements; <br> is a line's end."""
     return unescape(re.sub(r"<[^<>]*>", "", text.replace("<br>", "\n")))
 
 

@@ -133,7 +133,7 @@ class Model:
         return f"{type(self).__name__}({settings})"
 
     def _settings(self) -> dict[str, float | tuple[float, ...]]:
-        """What is known of the instrument, by the names of the constructor."""
+        """The constructor's arguments by name."""
         return {}
 
 
@@ -355,7 +355,7 @@ class Magnetometer(Model):
         )
 
     def at_noise(self, noise: Mapping[str, float]) -> Model:
-        """Of a strength: noise makes readings longer, by which the model corrects them.
+        """For a fit by field strength: noise makes readings longer, which the model corrects.
 
         Example:
             >>> sensor = sepcal.Magnetometer(field_strength=50.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What came of a Monte Carlo study: its records, and how the estimates lie about the truth."""
+"""Results of a Monte Carlo study: its records, and how the estimates lie about the truth."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class MonteCarlo:
     """A study. `print(study)` shows the table.
 
     Args:
-        records: Of stream_trials(), in any order.
+        records: Records of stream_trials(), in any order.
         truth: The parameters' true values by name, where the trials didn't give them.
 
     Attributes:
@@ -91,7 +91,7 @@ class MonteCarlo:
 
     @property
     def values(self) -> list[Any]:
-        """What the T trials that did not fail gave, a Fit as Estimates, in order."""
+        """The results of the T trials that did not fail, a Fit as Estimates, in order."""
         return [record.value for record in self.trials if record.failure is None]
 
     @cached_property
@@ -125,7 +125,7 @@ class MonteCarlo:
 
     @property
     def statuses(self) -> list[str]:
-        """Of the T fits."""
+        """The statuses of the T fits."""
         return [fit.status for fit in self.fits]
 
     @property
@@ -139,7 +139,7 @@ class MonteCarlo:
         return [kept[row] for row in np.flatnonzero(off.any(axis=1))]
 
     def __getitem__(self, name: str) -> Array:
-        """What the T trials gave under a name: (T,) numbers, or (T, ...) of arrays in a mapping.
+        """The T trials' results under a name: (T,) numbers, or (T, ...) of arrays in a mapping.
 
         Raises:
             Error: There is no such name, or its arrays have different shapes.
@@ -161,8 +161,8 @@ class MonteCarlo:
         """The statistics of every parameter, over all fits, converged or not.
 
         Args:
-            level: Of the intervals whose coverage is counted: estimate -+ Student's quantile of the
-                fit's degrees of freedom times its standard error.
+            level: Level of the intervals whose coverage is counted: estimate -+ Student's quantile
+                of the fit's degrees of freedom times its standard error.
 
         Raises:
             Error: level is not between 0 and 1; the trials gave no estimates.
@@ -295,7 +295,7 @@ def _to_estimates(value: object) -> Estimates:
 def _study(
     name: str, estimates: Array, standard_errors: Array, truth: Array, quantiles: Array
 ) -> ParameterStudy:
-    """Of the T trials; arrays (T,)."""
+    """Summarises the T trials; arrays (T,)."""
     has_error = np.isfinite(standard_errors)
     used = np.isfinite(estimates) & (has_error if has_error.any() else True)
     count = int(np.count_nonzero(used))

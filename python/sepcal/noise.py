@@ -33,8 +33,8 @@ def fit_noise(
         e: (N,), zero in the mean unless it is slow.
         segments: (first row, row after the last) of each stretch, independent of the others; other
             rows are not read [one of all rows].
-        order: Of the autoregression [that of least AIC]; short segments allow no high one. Not of
-            a start, which has its own.
+        order: Order of the autoregression [that of least AIC]; short segments allow no high one.
+            Not of a start, which has its own.
         max_order: At most so high then.
         start: An earlier fit's model, whose order and freedom of the level are kept.
 
@@ -84,10 +84,10 @@ def simulate_noise(
     """Draws of the noise, (N, draws).
 
     Args:
-        model: What is drawn.
+        model: The noise to draw.
         rows: N, or those of each segment, N in all.
         draws: Independent ones, a column each.
-        seed: Of std::mt19937_64.
+        seed: Seed of std::mt19937_64.
 
     Raises:
         Error: A model that isn't stationary, an empty segment.

@@ -122,7 +122,7 @@ def add_model(verb: argparse.ArgumentParser, *, needed: bool) -> None:
 def _add_flights(verb: argparse.ArgumentParser, *, several: bool = False) -> None:
     verb.add_argument("flights", metavar="LOG.csv", nargs="+" if several else 1)
     if several:
-        of_each = "of several flights: a parameter that each has for itself"
+        of_each = "with several flights: a parameter estimated per flight"
         verb.add_argument("--own", action="append", default=[], metavar="NAME", help=of_each)
 
 
@@ -170,7 +170,7 @@ def read_numbers(option: str, texts: Sequence[str], form: str) -> dict[str, floa
 
 
 def _options(given: argparse.Namespace) -> dict[str, Any]:
-    """Of what was typed."""
+    """The options that were typed."""
     options = {}
     for row in ROWS.values():
         value = getattr(given, row.name, None)

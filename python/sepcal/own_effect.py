@@ -37,7 +37,7 @@ class Effect:
 
     Attributes:
         name: Letters, digits and "_"; its parameters are called name.component.
-        function: Of a read-only mapping of the record's columns, each of shape (N,): the model's
+        function: Takes a read-only mapping of the record's columns, each of shape (N,): the model's
             inputs and outputs, a flight's quantities in SI units and fields in uT under names
             without a unit ("time", "alpha"), other columns under their headers. With a port it
             gives the driver, (N,), which each of the port's components follows with a coefficient
@@ -45,7 +45,7 @@ class Effect:
             there is one output. Exceptions reach the caller as they are.
         port: Where it enters, as in `port[driver]`: "wind", "bias"; of a model that is no probe,
             any linear parameter or input. None: on the outputs.
-        unit: Of a coefficient.
+        unit: Unit of a coefficient.
 
     Raises:
         Error: A name that is none, or a function that can't be called; when it is used, a port that
@@ -131,7 +131,7 @@ class Effect:
 
 
 class _Record(Mapping[str, Array]):
-    """What an effect's function sees."""
+    """The arguments that an effect's function gets."""
 
     def __init__(self, columns: dict[str, Array]) -> None:
         self._columns = columns

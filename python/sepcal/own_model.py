@@ -30,7 +30,7 @@ OPEN = (-math.inf, math.inf)
 
 
 class SeparableModel(Protocol):
-    """What sepcal.fit() takes as a model of your own.
+    """The interface of a model of your own, which sepcal.fit() takes.
 
         >>> class WindBox:
         ...     inputs = {"v": "m/s", "psi": "rad"}

@@ -33,7 +33,7 @@ TABLES = ("inputs", "states", "outputs", "linear", "nonlinear")
 
 
 class StateModel(Protocol):
-    """What sepcal.fit() takes as a model with a state of your own.
+    """The interface of a model with a state of your own, which sepcal.fit() takes.
 
         >>> class RollMode:
         ...     inputs = {"aileron": "rad"}
@@ -211,7 +211,7 @@ def _again(definition: StateModel, settings: TrajectoryOptions) -> Trajectory:
 
 
 class _Facts:
-    """What a model says beside its tables, as places in them."""
+    """A model's optional members, as places in its tables."""
 
     def __init__(self, owner: str, model: Any, names: Mapping[str, tuple[str, ...]]) -> None:  # noqa: ANN401
         self._names = names
@@ -243,7 +243,7 @@ class _Facts:
         self.noise = None if own else tuple(find("noise", names["noise"], "states"))
 
     def layout(self, nonlinear: Sequence[tuple[Any, ...]], options: dict[str, Any]) -> Layout:
-        """Of these options."""
+        """The layout for these options."""
         bounds = np.array([row[2:] for row in nonlinear], dtype=np.float64).reshape(-1, 2)
         scales = [k for k, scale in enumerate(self.scales) if scale]
         return Layout(

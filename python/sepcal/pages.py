@@ -21,12 +21,12 @@ class Page:
 
         @property
         def text(self) -> str:
-            """What print() shows: the app's page."""
+            """The app's page, as print() shows it."""
 
     _shown: ClassVar[Sequence[str]] = ()  # columns of the small table, among those of _rows()
 
     def _summary(self) -> str:
-        """What the one line of repr() says."""
+        """The words of repr()'s one line."""
         raise NotImplementedError
 
     def _rows(self) -> list[Row]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the package writes for people: names and messages, each in one line."""
+"""Text for people: names and messages, each in one line."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What long work shows: one line on standard error, or tqdm's bar in a notebook or where asked."""
+"""Progress of long work: one line on standard error, or tqdm's bar in a notebook or on request."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class _Line:
             threading.Thread(target=self._tell_on, args=(tick,), daemon=True).start()
 
     def report(self, task: str, fraction: float) -> None:
-        """What is being done, and how far it is."""
+        """Shows what is being done, and how far it is."""
         if task != self._task:
             self._task, self._begun = task, time.monotonic()
         self._fraction = fraction

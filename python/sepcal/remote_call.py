@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What runs on a worker: the function on a few items. Its exceptions travel as answers.
+"""Work on a worker: the function on a few items. Its exceptions travel as answers.
 
 So an exception of a future is the executor's own, and says that work was lost.
 """

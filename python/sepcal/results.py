@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a fit says: estimates with their uncertainty, the noise, and what stage one saw.
+"""Results of a fit: estimates with their uncertainty, the noise, and what stage one saw.
 
 Undefined numbers (the standard error of a fixed parameter, say) are NaN.
 """

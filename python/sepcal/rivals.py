@@ -95,7 +95,7 @@ class AlonsoShusterFit(_Named, _core.AlonsoShusterFit):
 
 
 class TwoStepProblem(Protocol):
-    """What fit_haupt_kasdin() takes: states in which the measurements are linear.
+    """The interface of a two-step problem: states in which the measurements are linear.
 
         >>> class Tone:  # z = (1 + a) cos(eta + b) + c
         ...     inputs = {"eta": "rad"}
@@ -231,10 +231,10 @@ def fit_single_stage(
         segments: Labels or spans of time [all].
         solver: Ceres' Levenberg-Marquardt, after which SLSQP goes on where steps that are clipped
             to the bounds end at no minimum; or NLopt's SLSQP, the nearest to MATLAB's fmincon.
-        cost: What SLSQP minimises: J over the number of rows, or J.
+        cost: The cost that SLSQP minimises: J over the number of rows, or J.
         noise_tolerance: R and the parameters alternate until every variance changes by less.
         noise_iterations: At most so many times.
-        evaluations: Of the cost in one minimisation, at most.
+        evaluations: The most evaluations of the cost in one minimisation.
         threads: 0: one a core.
 
     Raises:
@@ -295,12 +295,12 @@ def fit_haupt_kasdin(
     Args:
         problem: ExampleInFiveStates(), ..., or a TwoStepProblem of your own.
         data: Its inputs and outputs by name, each of shape (N,).
-        start: Of the second step, by name; parameters not named begin at zero.
+        start: Start of the second step, by name; parameters not named begin at zero.
         bounds: (lower, upper) of parameters by name, None for an open side [the problem's].
         noise: Standard deviation of every output; without it R is estimated.
         segments: Labels or spans of time [all].
-        solver: Of the second step, as fit_single_stage() has it.
-        evaluations: Of the second step, at most.
+        solver: Solver of the second step, as fit_single_stage() has it.
+        evaluations: The most evaluations in the second step.
 
     Raises:
         Error: Bad input or misuse: one line that names the culprit and the way out.
@@ -363,7 +363,7 @@ def fit_alonso_shuster(
             estimate before.
         mean_as_printed: The mean of the squared readings' noise is -3 noise^2, as in print; False:
             +3 noise^2, which it is.
-        iterations: Of the second step, at most.
+        iterations: The most iterations in the second step.
         segments: Labels or spans of time [all].
 
     Raises:

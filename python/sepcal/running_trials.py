@@ -59,7 +59,7 @@ def monte_carlo(
             threads=1: the executor's workers are the threads. On processes and clusters it must
             pickle, as must what it gives: define it with def at the top of a module.
         trials: How many, or their indices: range(1000, 2000) goes on where 1,000 ended.
-        seed: Of the study, not negative.
+        seed: The study's seed, not negative.
         truth: The parameters' true values by name, where the trials don't give them.
         executor: A concurrent.futures.Executor, left open; a function that makes one, as
             ProcessPoolExecutor does, which is also replaced where a dying worker breaks it; None:
@@ -171,7 +171,7 @@ def _to_indices(trials: int | Iterable[int]) -> range | list[int]:
 
 @contextmanager
 def _progress_of(progress: bool | Literal["tqdm"] | Progress | None) -> Iterator[Progress]:
-    """What to call after each trial."""
+    """The function to call after each trial."""
     if callable(progress):
         yield progress
         return

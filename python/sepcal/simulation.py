@@ -60,7 +60,7 @@ def simulate(
         model: The probe flown, or "five-hole", "pitot-static" or "magnetometer" with the
             simulation's own settings (k_alpha and k_beta 4.5, lever arm (0.35, 0, -0.02) m; field
             (19.7, -1.4, 49.4) uT); or an Aircraft, or "aircraft", a light one.
-        truth: What a truth file holds: {"parameters": {name: value}, "options": ..., "noise":
+        truth: The contents of a truth file: {"parameters": {name: value}, "options": ..., "noise":
             {output: standard deviation}}; what it leaves out keeps the simulation's value.
         parameters: True values by name, in the parameters' units; they come before `truth`.
         hide: Physical effects at work, each with its size: one for every component, or one a

@@ -26,7 +26,7 @@ class Smoothed(_core.SmoothedRecord):
 
     Attributes:
         time: (N,) [s]; None where the data have none, and where it was pickled.
-        units: Of states and outputs by name, as far as they are known; pickled they are lost.
+        units: Units of states and outputs by name, as far as they are known; pickled they are lost.
 
     Example:
         >>> flight = sepcal.datasets.load("aircraft")
@@ -50,12 +50,12 @@ class Smoothed(_core.SmoothedRecord):
 
     @property
     def standard_error(self) -> Array:
-        """Of x, (N, n_x)."""
+        """Standard errors of x, (N, n_x)."""
         return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
 
     @property
     def w_standard_error(self) -> Array:
-        """Of w, (N, n_w): by how much less than its density has it the record tells it."""
+        """Standard errors of w, (N, n_w): those of its density less what the record tells."""
         return np.sqrt(np.diagonal(self.w_covariance, axis1=1, axis2=2))
 
     @property

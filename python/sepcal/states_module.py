@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is compiled of models with a state and of the aircraft, loaded where it is asked for."""
+"""Loads the compiled module of models with a state and of the aircraft when it is needed."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ class Stepwise(Page, Generic[Fitted]):
         end: Why no more was: "nothing_found", "most_added", "withheld" (of what passes nothing is
             to be added, as real fits have it), "fit_failed" (that of the next one).
         reason: The same in a sentence.
-        diagnosis: Of the last fit.
+        diagnosis: The last fit's diagnosis.
 
     Example:
         >>> flight = sepcal.datasets.load("pitot")
@@ -58,12 +58,12 @@ class Stepwise(Page, Generic[Fitted]):
 
     @property
     def text(self) -> str:
-        """What print() shows: the app's page."""
+        """The app's page, as print() shows it."""
         return self._text
 
     @property
     def effects(self) -> list[str]:
-        """What was added and not dropped, in order."""
+        """The effects that were added and not dropped, in order."""
         kept: list[str] = []
         for step in self.steps:
             kept = [*(name for name in kept if name not in step.dropped), step.effect]
@@ -161,7 +161,7 @@ def diagnosis_options(
 def to_injected(
     inject: Mapping[str, float | Sequence[float]] | None, *, auto: bool
 ) -> tuple[str, list[float]] | None:
-    """What diagnose() puts into the measurements. Raises Error for several, and beside auto."""
+    """The effect that diagnose() injects. Raises Error for several, and together with auto."""
     if inject is not None and not isinstance(inject, Mapping):
         raise _core.Error(f"inject is {inject!r}; give {{effect: size}}")
     try:

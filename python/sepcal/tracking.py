@@ -30,9 +30,9 @@ class Track(_core.Track):
     """Estimates against time. `track["Za"]` is one of them, (M,).
 
     Attributes:
-        units: Of states, parameters and outputs by name, as far as they are known; pickled they are
-            lost.
-        notes: Of a flight: what was dropped or assumed, one line each, for people.
+        units: Units of states, parameters and outputs by name, as far as they are known; pickled
+            they are lost.
+        notes: For a flight: what was dropped or assumed, one line each, for people.
 
     Example:
         >>> flight = sepcal.datasets.load("aircraft")
@@ -59,7 +59,7 @@ class Track(_core.Track):
         return np.asarray(self.estimates[:, self._place(name)])
 
     def standard_deviation(self, name: str) -> Array:
-        """Of one estimate against time, (M,).
+        """The standard deviation of one estimate against time, (M,).
 
         Example:
             >>> flight = sepcal.datasets.load("aircraft")
@@ -215,27 +215,27 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             noises are estimated too, `q_alpha`, `r_alpha_m`; "rft", of models that are linear in
             their parameters, the recursive Fourier transform: equation error over a band (Morelli,
             J. Guid. Control Dyn. 23, 2000).
-        process_noise: Of a model with a state: roots of the noises' spectral densities, {name: sd},
-            by the names and in the units of its table of noises; those not named are none. By rml
-            these are held, and those not named are estimated, as `noise` is of outputs. With
+        process_noise: For a model with a state: roots of the noises' spectral densities, {name:
+            sd}, by the names and in the units of its table of noises; those not named are none. By
+            rml these are held, and those not named are estimated, as `noise` is of outputs. With
             start_rows the first rows are fitted by filter error then.
         walk: Parameters that may change on the way, {name: sd}: random walks, sd what one gathers
             in a second [unit / sqrt(s)]. Of ekf, iekf and srif.
-        changes: Of ekf, iekf and srif, a test on innovations that says when the parameters ceased
+        changes: For ekf, iekf and srif, a test on innovations that says when the parameters ceased
             to hold and which of them moved. "find": the first is in `changes`, the estimates stay
             as they are; "follow": what moved is opened from its onset on, and the next is looked
             for.
-        initial_states: Of states where a segment begins that `start_rows` hasn't fitted: {name: sd}
-            [ten times the largest value of the state on the way, as good as unknown].
-        row_iterations: Of iekf, at most so many a row.
-        tolerance: Of iekf: it ends where a step is shorter, in standard deviations of the estimate.
-        forgetting: What a sample counts for after the next, above 0, at most 1.
-        memory: Of rls, ekf, iekf and srif: so many rows count while innovations are as large as
+        initial_states: For states at the start of a segment that `start_rows` hasn't fitted: {name:
+            sd} [ten times the largest value of the state on the way, as good as unknown].
+        row_iterations: For iekf: the largest number in a row.
+        tolerance: For iekf: the shortest step, in standard deviations of the estimate.
+        forgetting: Forgetting factor, above 0, at most 1: multiplies older rows' weights.
+        memory: For rls, ekf, iekf and srif: how many rows count while innovations are as large as
             expected, fewer where they are larger [0: forgetting is constant].
-        every: Of rml: samples from a step of the parameters to the next.
-        band: Of rft, (low, high) of the frequencies [Hz].
-        spacing: Of rft, of the frequencies [0: 0.05 Hz].
-        differentiate: Of rft: outputs hold what the model gives the derivatives of, and their
+        every: For rml: the number of samples between steps of the parameters.
+        band: For rft, (low, high) of the frequencies [Hz].
+        spacing: For rft, the step between frequencies [0: 0.05 Hz].
+        differentiate: For rft: outputs hold what the model gives the derivatives of, and their
             transforms are multiplied by jw in place of a differentiation in time.
         **options: FitOptions.
 

@@ -31,7 +31,7 @@ class TrajectoryOptions(TypedDict, total=False):
     """How a model with a state is laid along a record; docs/states.md says more.
 
     Attributes:
-        inputs: What inputs do from row to row: straight lines, or "hold", the former row's value
+        inputs: How inputs change from row to row: straight lines, or "hold", the former row's value
             ["linear"].
         substeps: Runge-Kutta steps from row to row [1].
         shoot: Segments are cut every so many seconds, and each piece has initial states of its own

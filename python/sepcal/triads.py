@@ -28,7 +28,7 @@ def __dir__() -> list[str]:
 
 
 class Reference(Protocol):
-    """What a triad sees: tables `inputs`, `outputs` (three), `nonlinear` (may be empty).
+    """A triad's reference: tables `inputs`, `outputs` (three), `nonlinear` (may be empty).
 
     Example:
         >>> class Rates:  # of a gyroscope, in body axes
@@ -47,7 +47,7 @@ class Reference(Protocol):
     nonlinear: Table
 
     def at(self, u: Any, xi: Array, /) -> ArrayLike:  # noqa: ANN401
-        """What is seen, (N, 3), of the inputs (a named tuple of (N,)) and own parameters."""
+        """The vector, (N, 3), from the inputs (a named tuple of (N,)) and its own parameters."""
 
 
 class Factor(Protocol):
@@ -71,7 +71,7 @@ class Factor(Protocol):
 
 
 class _InBody:
-    """What is given in body axes and seen as it is."""
+    """A reference that is given in body axes and used as it is."""
 
     nonlinear: Table = ()
 
@@ -158,7 +158,8 @@ class Triad:
     n_z in the readings' unit; nonlinear ones the reference's, then each factor's.
 
     Args:
-        reference: What it sees: triads.FieldInBody(), SpecificForceInBody(), or one of yours.
+        reference: The vector that it measures: triads.FieldInBody(), SpecificForceInBody(), or one
+            of yours.
         *factors: The one next to the readings first: triads.Misalignment(), CrossCoupling(), yours.
 
     Raises:

@@ -35,7 +35,7 @@ class TrialTogether(Protocol):
         """One trial by itself."""
 
     def together(self, rngs: Sequence[Generator], /) -> Sequence[object | None]:
-        """What a study keeps of the trial of each generator; None where it is to run by itself."""
+        """The record of each generator's trial; None if it is to run by itself."""
 
 
 TrialFunction: TypeAlias = Callable[[Generator], Any] | Callable[[Generator, int], Any]
@@ -45,7 +45,7 @@ IMPORT = uuid.uuid4().hex  # with the process's number, which a fork changes, it
 
 @dataclass(frozen=True, eq=False)
 class Estimates:
-    """What a study keeps of a fit.
+    """The parts of a fit that a study keeps.
 
     Example:
         >>> eta, truth = np.linspace(-3.0, 3.0, 40), {"a": 0.3, "c": 1.0, "b": 0.2}

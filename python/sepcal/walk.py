@@ -29,7 +29,7 @@ class Path:
 
 
 class Walk:
-    """What C++ calls. What is known of a row is u, time and the measured states, in this order."""
+    """Called by C++ with a row's knowns: u, time and the measured states, in this order."""
 
     def __init__(self, owner: str, definition: Any, layout: Layout) -> None:  # noqa: ANN401
         self._layout, self._model = layout, CheckedModel(owner, definition, layout)
@@ -38,7 +38,7 @@ class Walk:
         self._free = [i for i in range(layout.states) if i not in layout.measured]
 
     def new_path(self) -> Path:
-        """Of a pass that begins."""
+        """The path of a pass that begins."""
         return Path()
 
     def walk(
@@ -114,7 +114,7 @@ class Walk:
     def read(
         self, known: Array, x: Array, p: Array, xi1: Array, seeds: list[int]
     ) -> tuple[Array, Array, Array]:
-        """What is expected of a row, `known` (1, n), at x (f,).
+        """The expected readings of a row, `known` (1, n), at x (f,).
 
         Returns:
             b + A xi1 (n_z,), its derivatives by x and the seeds (n_z, f + seeds), and A (n_z, n_1).
@@ -159,7 +159,7 @@ class Walk:
     def _steps(
         self, known: Array, x: Array, p: Array, seeds: list[int]
     ) -> tuple[Array, Array, Array]:
-        """What step() returns, of P points x (n_x, P) and p (n_p, P): (f, P, ...), (f, n_w, P)."""
+        """The results of step() at P points x (n_x, P) and p (n_p, P): (f, P, ...), (f, n_w, P)."""
         plan = self._seeds(p, seeds)
         delta, steps = self._deltas(x, plan)
         stages, dt = self._stages(known)
@@ -186,7 +186,7 @@ class Walk:
     def _readings(
         self, known: Array, x: Array, p: Array, xi1: Array, seeds: list[int]
     ) -> tuple[Array, Array, Array]:
-        """What read() returns, at P points: (n_z, P), (n_z, P, f + seeds), (n_z, n_1, P)."""
+        """The results of read() at P points: (n_z, P), (n_z, P, f + seeds), (n_z, n_1, P)."""
         P = x.shape[1]
         plan = self._seeds(p, seeds)
         S = np.zeros((1, P, self._layout.states, len(self._free) + len(seeds)))
@@ -238,7 +238,7 @@ class Walk:
         return whole
 
     def _stages(self, known: Array) -> tuple[Array, Array]:
-        """What is known at 2 substeps + 1 times from each row to the next, and the durations."""
+        """The knowns at 2 substeps + 1 times from each row to the next, and the durations."""
         n_u = len(self._layout.inputs)
         shares = np.linspace(0.0, 1.0, 2 * self._layout.substeps + 1)[:, np.newaxis]
         begin, change = known[:-1, np.newaxis], np.diff(known, axis=0)[:, np.newaxis]

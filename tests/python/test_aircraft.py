@@ -362,7 +362,7 @@ def test_a_comparison_by_filter_error_says_when(
     assert found.to_dict()["disturbances"][4]["name"] == "q_q"
     assert found.to_dict()["innovation"]["q"]["sigma"] > calm.sigma["q"]
     text = str(found)
-    assert "don't foretell" in text
+    assert "readings minus their predictions" in text
     assert f"{by_name['q_q'].first_s:.2f} to {by_name['q_q'].last_s:.2f} s" in text
     page = tmp_path / "report.html"
     sepcal.report([fit], str(page), pulsed)

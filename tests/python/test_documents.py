@@ -128,6 +128,17 @@ def test_readme_is_a_screen_and_a_half():
     assert len((ROOT / "README.md").read_text().split()) <= SCREEN_AND_A_HALF
 
 
+def test_every_limit_names_a_test_that_shows_it():
+    """And what is said after -k is part of a test's name there."""
+    limits = re.findall(r"^\*\*.*?(?:\n\n|\Z)", read("scope.md"), re.M | re.S)
+    assert limits
+    for limit in limits:
+        tests = re.findall(r"\]\(\.\./(tests/[\w/.]+)\)(?:,\s+`-k\s+(\w+)`)?", limit)
+        assert tests, limit
+        for file, part in tests:
+            assert not part or re.search(rf"def test_\w*{part}", (ROOT / file).read_text()), limit
+
+
 def test_the_index_lists_every_page():
     pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"README.md"}
     assert pages <= set(re.findall(r"\]\(([^)#]+)", read("README.md")))
@@ -175,7 +186,7 @@ def test_every_option_in_the_documents_is_in_the_help(options_in_help):
 
 
 def test_every_option_is_explained(options_in_help):
-    explained = option_names(read("commands.md")) | option_names(read("aircraft.md"))
+    explained = option_names(read("commands.md")) | option_names(read("aircraft-reference.md"))
     assert options_in_help - {"--help", "--output"} <= explained
 
 
@@ -192,7 +203,7 @@ def test_every_verb_in_the_documents_is_in_the_help():
     assert set(listed) == set(VERBS) <= explained
     listed = re.findall(r"^  ([a-z][a-z-]*)  ", verbs["sepcal-aircraft"], re.M)
     assert set(listed) == set(AIRCRAFT)
-    assert set(AIRCRAFT) <= set(re.findall(r"^\| `([a-z-]+)", read("aircraft.md"), re.M))
+    assert set(AIRCRAFT) <= set(re.findall(r"^\| `([a-z-]+)", read("aircraft-reference.md"), re.M))
 
 
 def test_scripts_and_files_in_typed_commands_exist():

@@ -59,7 +59,9 @@ def without_errors(page: str) -> str:
 
     R settles in fewer turns since, at the same numbers, which are compared beside the page.
     """
-    page = re.sub(r"\d+ iterations?, R settled in \d+", "R settled", page)
+    page = re.sub(
+        r"\d+ iterations?, (?:R settled|noise covariance converged) in \d+", "R settled", page
+    )
     page = RESTATED.sub("", page)
     page = TOGETHER.sub("", page)
     page = OUTPUTS.sub(lambda at: re.sub(r"^(\S+ +\S+).*$", r"\1", at[0], flags=re.M), page)

@@ -192,7 +192,7 @@ def test_what_is_forgotten_by_hand(method: str) -> None:
         deviation = np.sqrt(np.linalg.inv(information)[0, 0])
         assert_allclose(found.standard_deviation("k")[row - 40], deviation, rtol=1e-6)
     for wrong in (0.0, 1.1, -0.5):
-        with pytest.raises(sepcal.Error, match="forgetting is what a sample counts for after"):
+        with pytest.raises(sepcal.Error, match="forgetting multiplies the weight of older rows"):
             sepcal.track(Line(), data, start_rows=40, method=method, forgetting=wrong)
 
 

@@ -3,7 +3,7 @@
 
 Public is what a header outside detail/ declares in namespace sepcal: functions, and classes that
 have functions. A twin has the same name, in sepcal.__all__ or in a class there. docs/python.md
-lists those that are called otherwise, docs/decisions.md those without.
+lists those that are called otherwise, and those without.
 """
 
 import re
@@ -109,7 +109,7 @@ CLASSES = [one for one in map(sepcal.__dict__.get, sepcal.__all__) if isinstance
 OWN = [kind for one in CLASSES for kind in one.__mro__ if kind.__module__.startswith("sepcal")]
 SAME = set(sepcal.__all__).union(*map(vars, OWN))  # and nothing that is a dict's or a tuple's
 RENAMED = lines("python.md", "C++ and Python names")
-WITHOUT = lines("decisions.md", "No twin in Python")
+WITHOUT = lines("python.md", "In C++ only")
 LISTED = [name for names, _ in RENAMED + WITHOUT for name in names]
 
 
@@ -130,7 +130,7 @@ def test_functions_are_found_in_any_header():
 
 
 def test_every_function_has_a_twin_or_a_line():
-    """Else name it in docs/python.md, or say in docs/decisions.md why not."""
+    """Else name it in docs/python.md, or say there why not."""
     assert without_a_line(PUBLIC) == set()
 
 

@@ -68,7 +68,7 @@ CostBound bound_columns(const Model& model, const py::dict& columns,
 }  // namespace
 
 void define_certificate(py::module_& module) {
-  BoundStruct<Certificate>(module, "Certificate", "What is proven of a fit's cost in a box.")
+  BoundStruct<Certificate>(module, "Certificate", "A proof about a fit's cost in a box.")
       .field(
           "status", [](const Certificate& self) { return std::string(to_string(self.status)); },
           [](Certificate& self, const std::string& status) {
@@ -97,10 +97,10 @@ tolerance; "elsewhere": a lower one was found; "not_certified": the boxes ran ou
       .field("paper_error", &CostBound::paper_error, "E of Eq. 13.")
       .field("paper_lower", &CostBound::paper_lower,
              "J(xi2p) - E, which Eq. 7 takes for a bound and which is none.")
-      .field("l_1", &CostBound::l_1, "Of |xi1|.")
-      .field("l_2", &CostBound::l_2, "Of |xi2 - xi2p|.")
+      .field("l_1", &CostBound::l_1, "Bound of |xi1|.")
+      .field("l_2", &CostBound::l_2, "Bound of |xi2 - xi2p|.")
       .field("l_a", &CostBound::l_a, "Lipschitz constant of a sample's A, over R^1/2.")
-      .field("l_b", &CostBound::l_b, "Of its b.")
+      .field("l_b", &CostBound::l_b, "The same constant for b.")
       .field("joint_error", &CostBound::joint_error, "E', of all samples at once. Proven.")
       .field("lower", &CostBound::lower,
              "max(0, sqrt J(xi2p) - sqrt E')^2. Proven: nothing in the box has less.")

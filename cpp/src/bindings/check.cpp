@@ -40,17 +40,18 @@ void define_parts(py::module_& module) {
 
 void define_check(py::module_& module) {
   define_parts(module);
-  BoundStruct<Checked>(module, "FlightCheck", "What a log is, and what that does to a calibration.")
+  BoundStruct<Checked>(module, "FlightCheck",
+                       "A log's description, and what each problem does to a calibration.")
       .field("model", &Checked::check, &FlightCheck::model, "")
-      .field("file", &Checked::check, &FlightCheck::file, "Of the flight.")
+      .field("file", &Checked::check, &FlightCheck::file, "File of the flight.")
       .field("refused", &Checked::check, &FlightCheck::refused,
-             "What a fit would refuse it with; empty: it would not.")
+             "A fit's refusal of it; empty: it would not refuse.")
       .field("duration", &Checked::check, &FlightCheck::duration, "[s]")
       .field("rate", &Checked::check, &FlightCheck::rate, "Rows a second [Hz].")
       .field("columns", &Checked::check, &FlightCheck::columns, "")
       .field("notes", &Checked::check, &FlightCheck::notes, "Worst first.")
       .field("json", &Checked::json, "")
-      .field("text", &Checked::text, "What print() shows: the app's page.")
+      .field("text", &Checked::text, "The app's page, as print() shows it.")
       .copied()
       .finish();
   module.def("check", &check_flight);

@@ -40,8 +40,9 @@ void define_comparison(py::module_& module) {
                            "right: beyond 3 in 0.27 % of the rows.")
       .field("noise", &Disturbance::noise, "Its size, of the fit.")
       .field("share_beyond", &Disturbance::share_beyond,
-             "Of the rows beyond 3; NaN of a noise that is none or at its floor.")
-      .field("rows", &Disturbance::rows, "Of the longest stretch beyond 3; 0: there is none.")
+             "Share of the rows beyond 3; NaN of a noise that is none or at its floor.")
+      .field("rows", &Disturbance::rows,
+             "Length of the longest run beyond 3 sigma, in rows; 0 if none.")
       .field("first_s", &Disturbance::first_s, "")
       .field("last_s", &Disturbance::last_s, "")
       .field("peak", &Disturbance::peak, "The largest in it, with its sign.")
@@ -69,8 +70,9 @@ void define_comparison(py::module_& module) {
       .field(
           "file", [](const Compared& self) { return self.comparison.flight.file; },
           [](Compared& self, std::string file) { self.comparison.flight.file = std::move(file); },
-          "Of the flight.")
-      .field("status", &Compared::comparison, &Comparison::status, "Of the calibration, repeated.")
+          "File of the flight.")
+      .field("status", &Compared::comparison, &Comparison::status,
+             "Status of the calibration, repeated.")
       .field("message", &Compared::comparison, &Comparison::message, "")
       .field("overall", &Compared::comparison, &Comparison::overall, "One an output.")
       .field("where", &Compared::comparison, &Comparison::where,
@@ -94,7 +96,7 @@ void define_comparison(py::module_& module) {
              "One a column that was given as `reference`.")
       .field("notes", &Compared::comparison, &Comparison::notes, "One line each, for people.")
       .field("json", &Compared::json, "")
-      .field("text", &Compared::page, &Page::text, "What print() shows: the app's page.")
+      .field("text", &Compared::page, &Page::text, "The app's page, as print() shows it.")
       .field("explained", &Compared::page, &Page::explained,
              "The same with the whole message, as by the apps' --explain.")
       .copied()

@@ -66,7 +66,8 @@ void define_effect(py::module_& module) {
 }
 
 void define_parts(py::module_& module) {
-  BoundStruct<Advice>(module, "Advice", "What to add, once a fit with it has shown that it can be.")
+  BoundStruct<Advice>(module, "Advice",
+                      "Effects to add, once a fit with them has shown that they can be.")
       .field(
           "effect",
           [](const Advice& self) {
@@ -127,7 +128,7 @@ void define_causes(py::module_& module) {
 }
 
 void define_work(py::module_& module) {
-  BoundStruct<DiagnosisWork>(module, "DiagnosisWork", "What a diagnosis did.")
+  BoundStruct<DiagnosisWork>(module, "DiagnosisWork", "The work of a diagnosis.")
       .told()
       .comparable()
       .finish();
@@ -136,7 +137,7 @@ void define_work(py::module_& module) {
                          "An effect that was put into the measurements, to see whether it would "
                          "have been found.")
       .field("effect", &Injection::effect, "")
-      .field("sizes", &Injection::sizes, "Of its coefficients.")
+      .field("sizes", &Injection::sizes, "Sizes of its coefficients.")
       .field("found", &Injection::found, "Itself, or it would do as well as what was.")
       .field(
           "rank",

@@ -34,9 +34,9 @@ void define_effects(py::module_& module) {
                                 "An effect that fit(..., effects=[name]) adds to a probe's model.")
       .field("name", &CataloguedEffect::name,
              "`port[driver]`, or a name of its own; DRIVER stands for any.")
-      .field("equation", &CataloguedEffect::equation, "What joins the model.")
+      .field("equation", &CataloguedEffect::equation, "The equation that joins the model.")
       .field("drivers", &CataloguedEffect::drivers, "The columns that it needs.")
-      .field("unit", &CataloguedEffect::unit, "Of its coefficient.")
+      .field("unit", &CataloguedEffect::unit, "Unit of its coefficient.")
       .comparable()
       .finish();
   module.def("effects", [](const std::string& probe) {

@@ -103,24 +103,26 @@ void define_export(py::module_& module) {
       .field("airspeed_largest_mps", &Approximation::airspeed_largest_mps, "By size.")
       .field("residual_before", &Approximation::residual_before,
              "RMS of measured less modelled, of the calibration.")
-      .field("residual_after", &Approximation::residual_after, "Of what the vehicle holds.")
+      .field("residual_after", &Approximation::residual_after,
+             "Residual of what the vehicle holds.")
       .field("residual_unit", &Approximation::residual_unit, "")
       .comparable()
       .finish();
-  BoundStruct<ExportedFile>(module, "Exported", "What export() wrote.")
+  BoundStruct<ExportedFile>(module, "Exported", "The result of export().")
       .field("output", &ExportedFile::output, "The file.")
       .field("text", &ExportedFile::text, "All that is in it.")
-      .field("parameters", &ExportedFile::parameters, "Of an autopilot, by name.")
+      .field("parameters", &ExportedFile::parameters, "Parameters of an autopilot, by name.")
       .field("approximation", &ExportedFile::approximation, "None where nothing was changed.")
       .field("rotation", &ExportedFile::rotation,
-             "Of a magnetometer that the calibration turns: keep or refit, else None.")
+             "For a magnetometer that the calibration turns: keep or refit, else None.")
       .field("other_approximation", &ExportedFile::other_approximation,
-             "What the other one would lose; None where that is not known.")
+             "The loss of the other one; None where it is not known.")
       .field("left_to_others", &ExportedFile::left_to_others,
              "Effects that act on the reference or the wind: no part of a correction.")
-      .field("notes", &ExportedFile::notes, "What a person must know or do, one line each.")
+      .field("notes", &ExportedFile::notes,
+             "Notes on what a person must know or do, one line each.")
       .field("json", &ExportedFile::json, "As the app's export prints it.")
-      .field("page", &ExportedFile::page, "What print() shows: the app's page.")
+      .field("page", &ExportedFile::page, "The app's page, as print() shows it.")
       .copied()
       .finish();
   module.def("export_to_file", &write_export);

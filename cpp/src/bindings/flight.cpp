@@ -326,7 +326,7 @@ void define_calibration_parts(py::module_& module) {
       .comparable()
       .finish();
 
-  BoundStruct<Applied>(module, "Applied", "What apply_to_file() did.")
+  BoundStruct<Applied>(module, "Applied", "The result of apply_to_file().")
       .field("rows", &Applied::rows, "")
       .field("rows_left_empty", &Applied::rows_left_empty,
              "Nothing to calibrate: total below static pressure, or dropped.")
@@ -370,7 +370,7 @@ void define_calibration(py::module_& module) {
       "Whether a flight agrees with the others of a joint fit; NaN where nothing can be tested.")
       .field("flight", &FlightDeparture::flight, "Its label.")
       .field("p", &FlightDeparture::p,
-             "Of a larger difference by chance, by Holm for the number of flights.")
+             "Probability of a larger difference by chance, by Holm for the number of flights.")
       .field("parameter", &FlightDeparture::parameter,
              "Shared, the most different in standard errors; may be empty.")
       .field("difference", &FlightDeparture::difference,

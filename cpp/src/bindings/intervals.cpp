@@ -82,7 +82,7 @@ void define_intervals(py::module_& module) {
       .field("notes", &FoundIntervals::notes, "One line each, for people.")
       .field("json", &FoundIntervals::json, "")
       .field("text", &FoundIntervals::page, &Page::text,
-             "What print() shows: of a calibration's, the app's page.")
+             "The text that print() shows: for a calibration's, the app's page.")
       .field("explained", &FoundIntervals::page, &Page::explained,
              "The same with the whole message, as by the apps' --explain.")
       .copied()
@@ -93,7 +93,7 @@ void define_intervals(py::module_& module) {
 
   BoundStruct<FlightPrediction>(
       module, "Prediction",
-      "What a fit says of N samples, in the outputs' units and the model's order of outputs.")
+      "A fit's predictions of N samples, in the outputs' units and the model's order of outputs.")
       .field("value", &FlightPrediction::prediction, &Prediction::value, "(N, n_z), A xi1 + b.")
       .field("standard_error", &FlightPrediction::prediction, &Prediction::standard_error,
              "(N, n_z), of the value, from the parameters' covariance.")

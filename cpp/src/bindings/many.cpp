@@ -290,7 +290,8 @@ void define_results_of_many(py::module_& module) {
       .field("combinations", &Departure::combinations, "k of them; 0: nothing can be tested.")
       .field("statistic", &Departure::statistic,
              "d' V^-1 d, d the difference, V as the flights' noise models have it.")
-      .field("p", &Departure::p, "Of a larger one where nothing departs: F(k, rows x outputs - n).")
+      .field("p", &Departure::p,
+             "Probability of a larger one where nothing departs: F(k, rows x outputs - n).")
       .field("p_holm", &Departure::p_holm, "The same, by Holm for the number of flights.")
       .field("p_white", &Departure::p_white,
              "With white residuals of the common R, off the drop in cost.")
@@ -298,7 +299,7 @@ void define_results_of_many(py::module_& module) {
       .field("difference", &by_name<&Departure::difference>, &set_by_name<&Departure::difference>,
              "Own estimate less the others', by shared parameter; of a noise of its logarithm.")
       .field("standard_error", &by_name<&Departure::standard_error>,
-             &set_by_name<&Departure::standard_error>, "Of the difference.")
+             &set_by_name<&Departure::standard_error>, "Standard error of the difference.")
       .comparable()
       .finish()
       .def_property_readonly("largest", &largest,
@@ -312,7 +313,7 @@ void define_results_of_many(py::module_& module) {
       .field("rows", &FlightFit::rows, "")
       .field("alone", &FlightFit::alone,
              "Status of the flight's fit by itself, where the joint one began.")
-      .field("message", &FlightFit::message, "Of that fit.")
+      .field("message", &FlightFit::message, "Message of that fit.")
       .field("departure", &FlightFit::departure, "")
       .comparable()
       .finish()
@@ -325,7 +326,7 @@ void define_results_of_many(py::module_& module) {
       .field("message", &ManyFit::message, "One line; empty where there is nothing to say.")
       .field("shared", &ManyFit::shared, "In the model's order, fixed ones among them.")
       .field("covariance", &ManyFit::covariance,
-             "Of the shared parameters, in that order; NaN without a standard error.")
+             "Covariance of the shared parameters, in that order; NaN without a standard error.")
       .field("correlation", &ManyFit::correlation, "")
       .field("covariance_white", &ManyFit::covariance_white, "As white residuals would have it.")
       .field("flights", &ManyFit::flights, "In the order given.")
@@ -339,12 +340,12 @@ void define_results_of_many(py::module_& module) {
              "By filter error: process noises, then outputs, common to all flights.")
       .field("log_likelihood", &ManyFit::log_likelihood, "By filter error.")
       .field("unobservable", &ManyFit::identifiability, &Identifiability::unobservable,
-             "Of the shared parameters.")
+             "Unobservable combinations of the shared parameters.")
       .field("weak", &ManyFit::identifiability, &Identifiability::weak, "")
       .field("iterations", &ManyFit::iterations, "")
       .field("noise_iterations", &ManyFit::noise_iterations, "")
       .field("passes", &ManyFit::passes, "Over the data, beside each flight's own fit.")
-      .field("rows", &ManyFit::rows, "Of all flights.")
+      .field("rows", &ManyFit::rows, "Rows of all flights.")
       .copied()
       .finish()
       .def("__getitem__", [](const ManyFit& self, const std::string& name) {

@@ -94,7 +94,7 @@ void define_noise(py::module_& module) {
              "Comparable between fits of equal free_level and rows; -infinity of zeros.")
       .field("informative_rows", &NoiseFit::informative_rows,
              "Rows, less one for each segment where the level is free.")
-      .field("evaluations", &NoiseFit::evaluations, "Of the likelihood.")
+      .field("evaluations", &NoiseFit::evaluations, "Evaluations of the likelihood.")
       .field("converged", &NoiseFit::converged, "Whether another step would gain next to nothing.")
       .finish();
   module.def("fit_noise", &fit_residual);

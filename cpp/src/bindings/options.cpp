@@ -178,14 +178,15 @@ OptionRow row_of(const Field& field) {
 }
 
 void define_rows(py::module_& module) {
-  BoundStruct<OptionRow>(module, "OptionRow", "What is known of an option of fit().")
+  BoundStruct<OptionRow>(module, "OptionRow", "An option of fit().")
       .field("name", &OptionRow::name, "")
       .field("sentence", &OptionRow::sentence, "")
-      .field("unset", &OptionRow::unset, "What holds where it is not given; empty: its default.")
+      .field("unset", &OptionRow::unset,
+             "The words for an option that is not given; empty: its default.")
       .field("type", &OptionRow::type, "As type checkers call it.")
-      .field("choices", &OptionRow::choices, "Of one that is chosen by name.")
-      .field("flags", &OptionRow::flags, "Of the programs; empty: code alone has it.")
-      .field("form", &OptionRow::form, "What stands behind the flag.")
+      .field("choices", &OptionRow::choices, "Choices of an option that is chosen by name.")
+      .field("flags", &OptionRow::flags, "The programs' flags; empty: code alone has it.")
+      .field("form", &OptionRow::form, "The form of the flag's value.")
       .field("is_of_log", &OptionRow::is_of_log, "Chooses of a flight's columns and rows.")
       .finish();
   module.def("option_rows", [] {

@@ -44,7 +44,7 @@ void define_parameters(py::module_& module) {
              R"("0.8 w_n - 0.6 lambda_va", coefficients of unit length.)")
       .tuple("parameters", &Combination::parameters, "Those that take part, largest share first.")
       .field("standard_error", &Combination::standard_error,
-             "Of the combination; infinite where it is singular.")
+             "Standard error of the combination; infinite where it is singular.")
       .comparable()
       .finish();
 
@@ -52,16 +52,16 @@ void define_parameters(py::module_& module) {
       module, "EffectSetting",
       "An effect of a fit, with what it took from the record; None or empty where it takes none.")
       .field("name", &EffectSetting::name, R"(Whole, aliases resolved: "wind[altitude_m]".)")
-      .field("centre", &EffectSetting::centre, "Of a power's driver, in the driver's unit.")
+      .field("centre", &EffectSetting::centre, "Centre of a power's driver, in the driver's unit.")
       .field("mean", &EffectSetting::mean,
-             "Of the power over the fitted rows, where it is taken away.")
-      .tuple("knots", &EffectSetting::knots, "Of a spline.")
+             "Mean of the power over the fitted rows, where it is taken away.")
+      .tuple("knots", &EffectSetting::knots, "Knots of a spline.")
       .tuple("means", &EffectSetting::means,
-             "Of its functions over the fitted rows, where they are taken away.")
+             "Means of its functions over the fitted rows, where they are taken away.")
       .tuple("labels", &EffectSetting::labels,
-             "Of the driver `maneuver`; the first has no coefficient.")
+             "Labels of the driver `maneuver`; the first has no coefficient.")
       .field("span", &EffectSetting::span, "The record's first and last time [s].")
-      .field("t0", &EffectSetting::t0, "Of a step [s].")
+      .field("t0", &EffectSetting::t0, "t0 of a step [s].")
       .comparable()
       .finish();
 }
@@ -172,11 +172,12 @@ void define_results(py::module_& module) {
       .field("stage_one", &FittedModel::stage_one, "")
       .field("second_stage", &FittedModel::fit, &Fit::second_stage,
              R"("joint" or "projected": what stage two used in the end.)")
-      .field("iterations", &FittedModel::fit, &Fit::iterations, "Of stage two's minimisations.")
+      .field("iterations", &FittedModel::fit, &Fit::iterations,
+             "Iterations of stage two's minimisations.")
       .field("noise_iterations", &FittedModel::fit, &Fit::noise_iterations,
-             "Of R against the parameters.")
+             "Alternations of R with the parameters.")
       .field("effects", &FittedModel::effects, "That joined the model, in order.")
-      .field("text", &FittedModel::page, &Page::text, "What print() shows: the app's page.")
+      .field("text", &FittedModel::page, &Page::text, "The app's page, as print() shows it.")
       .field("explained", &FittedModel::page, &Page::explained,
              "The same with the whole message, as by the apps' --explain.")
       .copied()

@@ -167,16 +167,17 @@ void define_fits(py::module_& module) {
       .field("noise", &SingleStageFit::noise, "{output: standard deviation}")
       .field("cost", &SingleStageFit::cost, "J of Eq. 6, as a Fit has it.")
       .field("evaluations", &SingleStageFit::evaluations,
-             "Of the cost; of Levenberg-Marquardt iterations.")
-      .field("noise_iterations", &SingleStageFit::noise_iterations, "Of R against the parameters.")
+             "Evaluations of the cost; of Levenberg-Marquardt iterations.")
+      .field("noise_iterations", &SingleStageFit::noise_iterations,
+             "Alternations of R with the parameters.")
       .copied()
       .finish();
   BoundStruct<FirstStep>(module, "FirstStep", "The states of a two-step fit, found linearly.")
       .tuple("names", &FirstStep::names, "p")
       .field("states", &FirstStep::states, "(p,), of least norm where H is singular.")
       .field("information", &FirstStep::information, "(p, p), H' R^-1 H.")
-      .field("rank", &FirstStep::rank, "Of H.")
-      .field("condition", &FirstStep::condition, "Of H, its columns of unit length.")
+      .field("rank", &FirstStep::rank, "Rank of H.")
+      .field("condition", &FirstStep::condition, "Condition of H, its columns of unit length.")
       .field("noise", &FirstStep::noise, "{output: standard deviation}")
       .finish();
   BoundStruct<HauptKasdinFit>(module, "HauptKasdinFit", "A two-step fit by a change of variables.")
@@ -186,8 +187,8 @@ void define_fits(py::module_& module) {
       .field("estimates", &HauptKasdinFit::estimates, "(n,)")
       .field("standard_errors", &HauptKasdinFit::standard_errors, "(n,), NaN where undefined.")
       .field("covariance", &HauptKasdinFit::covariance, "(n, n)")
-      .field("cost", &HauptKasdinFit::cost, "Of Eq. 32.")
-      .field("evaluations", &HauptKasdinFit::evaluations, "Of the second step.")
+      .field("cost", &HauptKasdinFit::cost, "Cost of Eq. 32.")
+      .field("evaluations", &HauptKasdinFit::evaluations, "Evaluations of the second step.")
       .copied()
       .finish();
   BoundStruct<AlonsoShusterFit>(module, "AlonsoShusterFit", "TWOSTEP's magnetometer.")
@@ -202,7 +203,7 @@ void define_fits(py::module_& module) {
       .field("theta", &AlonsoShusterFit::theta, "(c, E), (9,), or b, (3,).")
       .field("centred", &AlonsoShusterFit::centred, "The same of the first step.")
       .field("cost", &AlonsoShusterFit::cost, "Half the weighted squares of the second step.")
-      .field("iterations", &AlonsoShusterFit::iterations, "Of the second step.")
+      .field("iterations", &AlonsoShusterFit::iterations, "Iterations of the second step.")
       .copied()
       .finish();
 }

@@ -28,10 +28,11 @@ using Rows = Eigen::Vector<std::size_t, Eigen::Dynamic>;
 
 void define_changes(py::module_& module) {
   BoundStruct<ParameterChange>(module, "ParameterChange", "A parameter that jumped on the way.")
-      .field("name", &ParameterChange::name, "Of the parameter.")
+      .field("name", &ParameterChange::name, "Name of the parameter.")
       .field("before", &ParameterChange::before, "Its estimate before the jump.")
       .field("after", &ParameterChange::after, "Behind it, as estimated when it was found.")
-      .field("standard_deviation", &ParameterChange::standard_deviation, "Of after - before.")
+      .field("standard_deviation", &ParameterChange::standard_deviation,
+             "Standard deviation of after - before.")
       .tuple("rivals", &ParameterChange::rivals,
              "Parameters whose jump in its place would explain the innovations nearly as well.")
       .finish();
@@ -41,7 +42,7 @@ void define_changes(py::module_& module) {
       .field("onset_time", &Change::onset_time, "[s]; NaN where the data have none.")
       .field("found_time", &Change::found_time, "[s].")
       .field("statistic", &Change::statistic,
-             "What it explains: chi squared, of one degree a parameter, where nothing jumped.")
+             "The chi squared that it explains, of one degree a parameter where nothing jumped.")
       .tuple("parameters", &Change::parameters, "The ParameterChange of each that jumped.")
       .finish();
 }
@@ -167,7 +168,8 @@ void define_smoothed(py::module_& module) {
 
 void define_innovation(py::module_& module) {
   using Update = Innovation<Eigen::Dynamic>;
-  BoundStruct<Update>(module, "Innovation", "What a measurement brought that was not expected.")
+  BoundStruct<Update>(module, "Innovation",
+                      "A measurement less its prediction, and its covariance.")
       .field("count", &Update::count, "Outputs that were there.")
       .field("e", &Update::e, "(n_z,), y - expected; 0 where missing.")
       .field("w", &Update::w, "(n_z,), e in standard deviations, uncorrelated.")

@@ -53,7 +53,7 @@ std::vector<std::string> describe_disagreement(const Names& parameters, const Ve
   if (!smaller.empty()) {
     sentences.push_back("standard error of " + base::list_names(smaller) +
                         " is by the noise model, up to " + times(below) +
-                        " that of blocks: the noise is slow, and blocks of the record miss that");
+                        " that of blocks: the noise is too slow for blocks of the record to show");
   }
   if (!refuted.empty()) {
     sentences.push_back("standard error of " + base::list_names(refuted) +

@@ -99,8 +99,8 @@ void check_of_method(const TrackOptions& options) {
     throw OptionError({Option{"changes"}, " is of ekf, iekf and srif; leave it out, or take ekf"});
   }
   if (!(options.forgetting > 0.0 && options.forgetting <= 1.0)) {
-    throw OptionError(
-        {Option{"forgetting"}, " is what a sample counts for after the next: above 0, at most 1"});
+    throw OptionError({Option{"forgetting"},
+                       " multiplies the weight of older rows at each new one: above 0, at most 1"});
   }
   if (options.memory != 0.0) check_memory(options);
   refuse(options.differentiate, "differentiate", TrackMethod::rft);

@@ -69,7 +69,7 @@ and `diagnose` looks for what is missing. Seeds count from {options.first_seed}.
   on rows held out), or is such an alternative.
 
 An effect that changes as slowly as instruments drift, and by less, doesn't count as found at any
-size ([how far they drift](diagnosis.md#how-far-instruments-wander)).
+size ([how far they drift](diagnosis.md#how-far-instruments-drift)).
 
 ![share of flights against size]({picture})"""
 

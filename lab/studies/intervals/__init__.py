@@ -36,7 +36,7 @@ def _run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
 
 STUDY = Study(
     "intervals",
-    "how often Gaussian and profile intervals hold the truth: short records, bounds, bent and "
+    "how often Gaussian and profile intervals hold the truth: short records, bounds, curved and "
     "weak models, coloured noise, a probe",
     _run,
     _add_options,

@@ -29,11 +29,11 @@ class Recipe:
     """A flight, and the instruments that it is read with.
 
     Attributes:
-        model: As of simulate().
+        model: As in simulate().
         about: A sentence.
-        seed: Of the flight, and of the instruments' errors.
-        rows: Of the flight.
-        hide: As of simulate().
+        seed: Seed of the flight and of the instruments' errors.
+        rows: Number of rows of the flight.
+        hide: As in simulate().
         steps: By column of the log, in order, the step that its readings lie on, in its unit.
         wander: By column, how far its zero has wandered after the flight, one standard deviation of
             a random walk, in its unit.
@@ -141,7 +141,7 @@ def make(name: str) -> tuple[str, dict[str, Any]]:
 
 
 def _read(true: Array, step: float, wander: float, rng: Generator) -> Array:
-    """What an instrument says whose zero wanders and whose readings lie on steps."""
+    """The readings of an instrument whose zero drifts and that has a resolution."""
     walk = np.cumsum(rng.standard_normal(true.size)) / np.sqrt(true.size)
     read: Array = np.round((true + wander * walk) / step) * step
     return read

@@ -53,7 +53,7 @@ class EarthField:
 
     @property
     def declination(self) -> float:
-        """Of magnetic north from true north, east positive [deg]."""
+        """The angle from true to magnetic north, east positive [deg]."""
         return math.degrees(math.atan2(self.east, self.north))
 
     @property

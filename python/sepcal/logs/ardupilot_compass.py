@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What ArduPilot did to a compass before it logged it, undone: the raw sensor in body axes.
+"""Undoes what ArduPilot did to a compass before logging it: the raw sensor in body axes.
 
 ArduPilot computes m = M s (raw + OFS) + MOT x in mG, with M = [[DIA_X, ODI_X, ODI_Y],
 [ODI_X, DIA_Y, ODI_Z], [ODI_Y, ODI_Z, DIA_Z]], the scale s and the motors' field MOT x. Before it
@@ -51,8 +51,8 @@ def undo(
         offsets: OFS as logged, likewise.
         motors: MOT x as logged, likewise.
         times: Shape (n,) [s].
-        parameters: Of the log.
-        suffix: Of the compass' parameters: "", "2", "3".
+        parameters: The log's parameters.
+        suffix: Suffix of the compass' parameters: "", "2", "3".
 
     Returns:
         The raw readings, (n, 3) [mG], and what was undone, in sentences.

@@ -12,7 +12,7 @@ from sepcal.columns import Array
 
 
 def from_euler(angles: Array) -> Array:
-    """Of roll, pitch, yaw [rad], shape (n, 3): quaternions (n, 4)."""
+    """Quaternions (n, 4) from roll, pitch, yaw [rad], shape (n, 3)."""
     (cr, cp, cy), (sr, sp, sy) = np.cos(angles.T / 2), np.sin(angles.T / 2)
     return np.stack(
         (
@@ -26,7 +26,7 @@ def from_euler(angles: Array) -> Array:
 
 
 def to_euler(q: Array) -> Array:
-    """Of quaternions (n, 4), not necessarily of length one: roll, pitch, yaw [rad], (n, 3)."""
+    """Roll, pitch, yaw [rad], (n, 3), from quaternions (n, 4) of any length."""
     w, x, y, z = (q / np.linalg.norm(q, axis=-1, keepdims=True)).T
     return np.stack(
         (

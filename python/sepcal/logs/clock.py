@@ -24,7 +24,7 @@ LEAPS = tuple(
 
 
 def from_gps(times: Array, weeks: Array, milliseconds: Array, source: str) -> Utc | None:
-    """Of GPS weeks and milliseconds at times of the log's clock; None where all are zero."""
+    """UTC from GPS weeks and milliseconds at times of the log's clock; None if all are zero."""
     known = weeks > 0
     if not known.any():
         return None
@@ -38,7 +38,7 @@ def from_gps(times: Array, weeks: Array, milliseconds: Array, source: str) -> Ut
 
 
 def from_unix(times: Array, microseconds: Array, source: str) -> Utc | None:
-    """Of UTC [us] at times of the log's clock; None where it is nowhere set."""
+    """UTC from microseconds at times of the log's clock; None if it is set nowhere."""
     known = microseconds > 0
     if not known.any():
         return None

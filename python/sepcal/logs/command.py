@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def describe(flight: LoggedFlight, output: str, sensors: list[str]) -> str:
-    """What was written, and what to do next."""
+    """Says what was written and what to do next."""
     told = flight.conversion
     sensor, span, field = told["sensor"], told["span"], told["field"]
     what = ", ".join(text for text in (sensor["kind"], sensor["title"]) if text)

@@ -91,7 +91,7 @@ def _read_attitude(log: DataFlash) -> Channel | None:
 
 
 def _read_velocity(log: DataFlash, parameters: Parameters) -> Channel | None:
-    """Of the filter that flew, its primary core; else of the GPS."""
+    """The velocity of the filter that flew, its primary core; otherwise that of the GPS."""
     order = ("XKF1", "NKF1", "EKF1")
     if parameters.first("AHRS_EKF_TYPE") == 2:
         order = ("NKF1", "XKF1", "EKF1")

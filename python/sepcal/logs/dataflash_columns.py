@@ -86,7 +86,7 @@ class Messages:
 
 @dataclass(frozen=True)
 class Found:
-    """What is in a file: messages by name, where it ends inside one, bytes that are none."""
+    """The contents of a file: messages by name, where it ends inside one, bytes that are none."""
 
     by_name: dict[str, Messages]
     torn: str

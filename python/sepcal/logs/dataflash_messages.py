@@ -49,7 +49,7 @@ class DataFlash:
         return self.by_name.get(name)
 
     def times(self, messages: Messages) -> Array:
-        """Of each message [s]; of messages without a stamp that of the last stamped one before."""
+        """The time of each message [s]; without a stamp, that of the last stamped one before."""
         stamps = _stamps(messages)
         if stamps is not None:
             return stamps

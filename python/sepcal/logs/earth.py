@@ -22,7 +22,7 @@ class FieldColumns:
 
     Attributes:
         first: The field where the flight was first known.
-        source: What it is of.
+        source: Its source.
         done: How, in sentences.
     """
 

@@ -29,9 +29,9 @@ class LoggedFlight(Flight):
 
     Attributes:
         sensor: Whose readings they are, "mag0" or "pitot0".
-        conversion: What was done: the log, the sensor, UTC, the Earth's field, rows that were left
-            out, and of each column its source and what was done to it. It is what stands beside
-            the CSV file as JSON.
+        conversion: Steps of the conversion: the log, the sensor, UTC, the Earth's field, rows that
+            were left out, and of each column its source and what was done to it. It is what stands
+            beside the CSV file as JSON.
 
     Example:
         >>> flight = sepcal.read_log(folder / "flight.ulg")
@@ -86,7 +86,7 @@ def read_log(
             "2026-03-01" or a decimal year.
         field: Whether the Earth's field is filled in where positions are logged.
         cut_off: Whether a log that ends inside a message is taken for what is whole.
-        progress: As of sepcal.report().
+        progress: As in sepcal.report().
 
     Returns:
         LoggedFlight with columns of shape (rows,): time_s on the log's clock; of a magnetometer

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a log has, and what can be calibrated from it."""
+"""Lists what a log has and what can be calibrated from it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from sepcal.whole_files import name_of
 
 @dataclass(frozen=True)
 class LogContents:
-    """What a log has. `print(contents)` shows the page.
+    """The contents of a log. `print(contents)` shows the page.
 
     Attributes:
         sensors: Names of those that can be calibrated, "mag0", "pitot0".
@@ -185,7 +185,7 @@ def _channel_table(title: str, channels: dict[str, dict[str, Any]]) -> list[str]
 
 
 def _advise(told: dict[str, Any]) -> list[str]:
-    """What can be calibrated, as commands."""
+    """Commands for what can be calibrated."""
     lines = ["can be calibrated:"]
     field = told["field"]
     for sensor in told["sensors"]:

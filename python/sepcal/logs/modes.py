@@ -42,7 +42,7 @@ def combine(
     """One label from each change on: the mode, or "disarmed".
 
     Args:
-        source: What they are of.
+        source: Their source.
         modes: Times (n,) and the mode from each on.
         armed: Times (m,) and whether the vehicle is armed from each on; before the first time it
             was the other way round. None: not logged.

@@ -14,7 +14,7 @@ class Parameters:
     """Values by name, each from the time on at which it was set; the first one from the start."""
 
     def __init__(self, settings: Iterable[tuple[float, str, float]]) -> None:
-        """Of (time [s], name, value), in the log's order."""
+        """Takes (time [s], name, value), in the log's order."""
         self._settings: dict[str, list[tuple[float, float]]] = {}
         for time, name, value in settings:
             self._settings.setdefault(name, []).append((time, float(value)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What PX4 knows of a tube's pressure sensor: its kind, and what is set for one with a flow.
+"""PX4's settings of a tube's pressure sensor: its kind, and those for one with a flow.
 
 An export to PX4 asks for both, so that they go with the readings as columns.
 """

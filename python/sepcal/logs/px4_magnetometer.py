@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What PX4 did to a magnetometer, undone: the raw sensor, turned into body axes.
+"""Undoes what PX4 did to a magnetometer: the raw sensor, turned into body axes.
 
 PX4 computes m = R S (raw + COMP power - OFF) in gauss, with S = [[XSCALE, XODIAG, YODIAG],
 [XODIAG, YSCALE, ZODIAG], [YODIAG, ZODIAG, ZSCALE]] and COMP at full throttle or per kA. Parameters
@@ -21,7 +21,7 @@ MOST = 4  # magnetometers
 
 
 class Correction:
-    """What PX4 applies to one device.
+    """The correction that PX4 applies to one device.
 
     Attributes:
         place: n of CAL_MAGn_...; None where no parameters name the device.

@@ -21,13 +21,13 @@ MAGNETOMETER, TUBE = "magnetometer", "pitot-static tube"
 
 @dataclass(frozen=True)
 class Channel:
-    """What one message of a log said, sample by sample.
+    """The readings of one message of a log, sample by sample.
 
     Attributes:
         source: The fields it is of, "ATT.Roll, Pitch, Yaw".
         times: Shape (n,), increasing [s].
         values: Shape (n, k), finite.
-        done: What was done to the logged values, in sentences.
+        done: Changes made to the logged values, in sentences.
     """
 
     source: str
@@ -51,9 +51,9 @@ class Sensor:
         kind: MAGNETOMETER or TUBE.
         readings: Of a magnetometer (n, 3) in uT, body axes, as the raw sensor read; of a tube
             (n, 1) in Pa, the differential pressure, or in m/s, the airspeed.
-        header: Of a tube's reading, "dp_pa" or "airspeed_mps".
+        header: Header of a tube's reading, "dp_pa" or "airspeed_mps".
         own: Channels of the sensor itself by header, such as its temperature.
-        title: What the log says of it, a device's number.
+        title: The device's number, as the log has it.
     """
 
     name: str
@@ -106,7 +106,7 @@ class Recording:
         drivers: Other channels (n, 1) by header.
         labels: Modes, or None.
         utc: None where the log has no date.
-        notes: What is odd about it, in sentences.
+        notes: Oddities, in sentences.
     """
 
     file: str

@@ -9,7 +9,7 @@ from sepcal.columns import Array
 
 
 def symmetric(diagonal: Array, off_diagonal: Array) -> Array:
-    """Of xx, yy, zz and xy, xz, yz, each (n, 3): matrices (n, 3, 3)."""
+    """Matrices (n, 3, 3) from xx, yy, zz and xy, xz, yz, each (n, 3)."""
     x, y, z = diagonal.T
     xy, xz, yz = off_diagonal.T
     rows = ((x, xy, xz), (xy, y, yz), (xz, yz, z))

@@ -104,7 +104,7 @@ def build_table(
 
 
 def _drivers_of(log: Recording, sensor: Sensor) -> dict[str, Channel]:
-    """What may drive an effect; of the air's state only a tube needs more than temperature."""
+    """Columns that may drive an effect; only a tube needs more of the air than its temperature."""
     drivers = {**log.drivers, **sensor.own}
     if sensor.kind == MAGNETOMETER:
         return {h: c for h, c in drivers.items() if h not in ("ps_pa", "rho_kgpm3")}

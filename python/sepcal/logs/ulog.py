@@ -73,7 +73,7 @@ def _read_rates(log: ULog) -> Channel | None:
 
 
 def _read_velocity(log: ULog) -> Channel | None:
-    """Of the filter, where it says that it is valid; else of the GPS."""
+    """The filter's velocity, if it says that it is valid; otherwise that of the GPS."""
     for topic in log.topics("vehicle_local_position"):
         valid = np.ones(len(topic), dtype=bool)
         for flag in ("v_xy_valid", "v_z_valid"):
@@ -95,7 +95,7 @@ def _has_fix(topic: Topic) -> np.ndarray:
 
 
 def _read_position(log: ULog) -> Channel | None:
-    """Of the GPS; older ones are in 1e-7 degrees and millimetres."""
+    """The GPS position; older ones are in 1e-7 degrees and millimetres."""
     for topic in log.topics(*GPS):
         for columns, factors in (
             (("latitude_deg", "longitude_deg", "altitude_msl_m"), (1.0, 1.0, 1.0)),
@@ -169,7 +169,7 @@ def _read_static_pressure(log: ULog) -> Channel | None:
 
 
 def _read_temperature(log: ULog) -> Channel | None:
-    """Of the air; where only a board's is logged, that."""
+    """The air's temperature, or a board's if only that is logged."""
     for topic, column in (
         ("airspeed", "air_temperature_celsius"),
         ("vehicle_air_data", "ambient_temperature"),

@@ -131,7 +131,7 @@ def _in_body(
 
 
 def _learned_bias(log: ULog, times: Array, index: int) -> tuple[Array, tuple[str, ...]]:
-    """What the autopilot learned on the ground and took off too, (n, 3) in gauss."""
+    """The offset that the autopilot learned on the ground and subtracted too, (n, 3) in gauss."""
     bias = np.zeros((len(times), 3))
     for topic in log.topics("magnetometer_bias_estimate"):
         columns = tuple(f"bias_{axis}[{index}]" for axis in "xyz")
@@ -183,7 +183,7 @@ def _make_sensor(
     raw: Channel | None,
     undone: Channel | None,
 ) -> Sensor | None:
-    """Of the two the raw one, unless the other is much faster; then it is compared."""
+    """Takes the raw sensor, unless the other is much faster; then the raw one is compared."""
     readings = raw or undone
     if readings is None:
         return None

@@ -87,7 +87,7 @@ class Topic:
         return np.stack([self[column] for column in columns], axis=-1)
 
     def devices(self) -> np.ndarray | None:
-        """Of each sample, where it is told."""
+        """The device of each sample, if it is logged."""
         found = self._columns.get("device_id")
         return None if found is None or not found.any() else found.astype(np.int64)
 

@@ -5,5 +5,5 @@ from __future__ import annotations
 
 
 def one_line(text: object) -> str:
-    """What can be printed of it; a question mark for what can't."""
+    """The printable characters; a question mark for others."""
     return "".join(c if c.isprintable() else "?" for c in str(text)).strip()

@@ -23,7 +23,7 @@ def as_figure(figures: Sequence[Figure], backend: Backend, theme: Theme, columns
         figures: One at least.
         backend: "plotly", a plotly.graph_objects.Figure; "matplotlib", a matplotlib.figure.Figure.
         theme: "light", as on the report, or "dark".
-        columns: Of the grid, where there are several.
+        columns: Number of columns of the grid, if there are several pictures.
 
     Raises:
         Error: Nothing to draw; a backend or a theme that there isn't; its library is not installed.

@@ -41,9 +41,9 @@ def draw_spans(
     """Intervals about points, a row each, the first on top; several kinds are drawn below another.
 
     Args:
-        title: Of the figure.
+        title: The figure's title.
         x_title: With the unit.
-        rows: What stands at the left, text or Html.
+        rows: The words at the left, text or Html.
         middle: The points.
         kinds: By the legend's word, a span a row.
     """
@@ -126,7 +126,7 @@ def draw_ranking(names: Sequence[str], drops: Array, gains: Array, found: Sequen
 
 
 def draw_correlation(names: Sequence[str], correlation: Array) -> Figure:
-    """Of estimates, (n, n): blue together, red against one another."""
+    """Draws the correlation of estimates, (n, n): blue if positive, red if negative."""
     places = list(range(len(names)))
     ticks = [in_figure(words.abbreviate(name, 28)) for name in names]
     longest = max(map(len, ticks), default=0)

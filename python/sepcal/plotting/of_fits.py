@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What plot() shows of calibrations and of what is asked of them."""
+"""Pictures that plot() draws of calibrations and of their verbs' results."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 
 def picture_fit(fit: Fit, what: str = "correlation") -> list[Figure]:
-    """Of any fit: how its estimates go together; of those that have an error."""
+    """Pictures of any fit: the correlation of estimates that have an error."""
     if what == "ellipses":
         return draw_ellipses(fit)
     if what == "stage one":
@@ -76,7 +76,7 @@ def picture_stage_one(fit: Fit, landscape: _core.CostLandscape | None = None) ->
 def picture_calibration(
     calibration: Calibration, what: str, core: _core.Calibration, flight: Flight
 ) -> list[Figure]:
-    """Of a calibration on a flight; `core` is it there."""
+    """Pictures of a calibration on a flight; `core` is the calibration there."""
     if what == "stage one":
         return picture_stage_one(calibration, _core.cost_landscape(core, flight._core))
     comparison = Comparison(core.compare(flight._core))
@@ -97,7 +97,7 @@ def picture_calibration(
 
 
 def picture_steps(calibration: Calibration) -> list[Figure]:
-    """What every effect that was added took off the error."""
+    """The share of the error that each added effect removed."""
     steps = steps_of(calibration.history)
     if not steps:
         raise _core.Error("there are no steps: nothing was added yet; add(effect) makes one")
@@ -107,7 +107,7 @@ def picture_steps(calibration: Calibration) -> list[Figure]:
 def picture_aircraft(
     fit: AircraftFit, what: str, flight: Flight, process_noise: Mapping[str, float]
 ) -> list[Figure]:
-    """Of a flight path or an aircraft on a flight."""
+    """Pictures of a flight path or an aircraft on a flight."""
     flown = gather_flown([fit], flight, [], process_noise, lambda _: None)
     if what == "fit":
         return [draw_flown(flown)]
@@ -142,7 +142,7 @@ def picture_comparison(comparison: Comparison, what: str) -> list[Figure]:
 
 
 def _picture_references(comparison: Comparison) -> list[Figure]:
-    """What is calibrated less each reference, over time."""
+    """Calibrated readings less each reference, over time."""
     if not comparison.references:
         raise _core.Error('there is no reference: compare(reference="COLUMN") names one')
     drawn = [
@@ -156,7 +156,7 @@ def _picture_references(comparison: Comparison) -> list[Figure]:
 
 
 def _title(where: Sequence[_core.Misfit]) -> str:
-    """What the numbers of a heat strip are."""
+    """The meaning of a heat strip's numbers."""
     units = {misfit.unit for misfit in where}
     if len(units) > 1:
         return "RMSE by stretch of the flight, each output in its own unit"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What plot() shows of flights, of checks, and of what is estimated along a record."""
+"""Pictures that plot() draws of flights, checks and estimates along a record."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def picture_flight(flight: Flight, columns: Sequence[str] | None) -> list[Figure
 
 
 def picture_check(check: FlightCheck, flight: Flight) -> list[Figure]:
-    """What the model reads, over time; red where something was noted about the column."""
+    """The model's columns over time; red where something was noted about the column."""
     time, x_title = time_of(flight)
     there = set(flight)
     read = [at.header for at in check.columns if at.quantity and at.header in there]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What plot() shows of many trials and of many flights."""
+"""Pictures that plot() draws of many trials and of many flights."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def picture_study(study: MonteCarlo, what: str | None) -> list[Figure]:
-    """Of every parameter the estimates, or their errors in standard errors."""
+    """Draws each parameter's estimates, or their errors in standard errors."""
     if not study.names:
         raise _core.Error("the trials gave no estimates; nothing can be drawn")
     errors = (study.estimates - study.truth) / study.standard_errors
@@ -42,7 +42,7 @@ def picture_study(study: MonteCarlo, what: str | None) -> list[Figure]:
 
 
 def picture_trials(fits: TrialFits) -> list[Figure]:
-    """Of every parameter the estimates."""
+    """Draws each parameter's estimates."""
     return [
         draw_estimates(name, name, column, {"mean": float(np.nanmean(column))})
         for name, column in zip(fits.names, fits.estimates.T, strict=True)

@@ -394,7 +394,7 @@ class _Drawing:
         xref: str,
         yref: str,
     ) -> dict[str, float]:
-        """Of the figure, by Plotly's paper, which is the figure within its margins."""
+        """The figure's coordinates, from those of Plotly's paper, the figure within its margins."""
         height, margin = float(self.layout["height"]), self.margin
         inside = {"x": WIDTH - margin["l"] - margin["r"], "y": height - margin["t"] - margin["b"]}
         data = axes.transData.transform((at["x"], at["y"]))
@@ -417,7 +417,7 @@ class _Drawing:
         )  # fmt: skip
 
     def _keep(self, trace: dict[str, Any], handle: Any) -> None:  # noqa: ANN401
-        """What stands in the legend."""
+        """The entries of the legend."""
         if handle is not None and trace.get("showlegend", True) and trace.get("name"):
             self.handles.setdefault(_plain(trace["name"]), handle)
 
@@ -449,7 +449,7 @@ class _Plain(ScalarFormatter):
     """Ticks as they are; tiny ones in millionths or billionths, as Plotly writes them."""
 
     def format_ticks(self, values: Any) -> list[str]:  # noqa: ANN401
-        """Of all ticks of an axis."""
+        """The labels of all ticks of an axis."""
         size = max((abs(at) for at in values), default=0.0)
         for scale, prefix in ((1e-9, "n"), (1e-6, "µ")):
             if 0.0 < size < 1000 * scale:

@@ -20,8 +20,8 @@ def read_file(
     Args:
         file: The file, or FILE::TABLE, where a sheet, a group, a topic or a sensor is meant.
         table: The same apart from the name.
-        delimiter: Of a table as text, what parts its columns; empty: as the file shows.
-        decimal: Of a table as text, its decimal mark; empty: as the file shows.
+        delimiter: A text table's column separator; empty: as the file shows.
+        decimal: A text table's decimal mark; empty: as the file shows.
 
     Raises:
         Error: No such file, no table, one that is damaged or too large, a missing library.

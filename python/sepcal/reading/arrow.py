@@ -72,7 +72,7 @@ def read_arrow(file: str, _: str | None) -> Table:
 
 
 def of_table(table: Any) -> Table:  # noqa: ANN401
-    """Of a pyarrow Table or RecordBatch in memory."""
+    """Reads a pyarrow Table or RecordBatch in memory."""
     pa = load("pyarrow", "flight", "an Arrow table")
     if isinstance(table, pa.RecordBatch):
         table = pa.Table.from_batches([table])
@@ -152,7 +152,7 @@ def _values(pa: Any, column: Any) -> np.ndarray:  # noqa: ANN401
 
 
 def _counted(batches: Iterable[Any], budget: Budget) -> Iterable[Any]:
-    """What was unpacked indeed, whatever had been declared."""
+    """The size that was in fact unpacked, whatever had been declared."""
     for batch in batches:
         budget.take(batch.nbytes, "the table")
         yield batch

@@ -53,7 +53,7 @@ def _choose(log: Recording) -> list[str | None]:
 
 
 def _to_table(log: Recording, name: str | None) -> Table:
-    """Of one sensor; without the Earth's field where that alone fails: a fit can be told it."""
+    """The table of one sensor; without the Earth's field if only that fails: fit takes it too."""
     try:
         return _of_flight(convert(log, name, None, None, None, field=True))
     except _core.Error as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a file is, by its first bytes and never by its name alone."""
+"""Tells a file's form by its first bytes, never by its name alone."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class Reader:
         return found
 
     def nodes_of(self, group: Any) -> list[tuple[str, Any]]:  # noqa: ANN401
-        """What hangs below a group by a link of its own: none outside the file."""
+        """The members of a group by links of its own; none outside the file."""
         found = []
         for name in group:
             self._left -= 1

@@ -60,7 +60,7 @@ PARTS_OF_POSITION = {"LAD", "LOD", "TDS"}  # further digits of latitude, longitu
 
 @dataclass
 class Extension:
-    """What the I record says of a B record's bytes from `start` to before `end`."""
+    """The name that the I record gives a B record's bytes from `start` to before `end`."""
 
     code: str
     start: int
@@ -165,7 +165,7 @@ def _to_date(found: re.Match[bytes]) -> str:
 
 
 def _seconds(digits: bytes) -> float | None:
-    """Of HHMMSS, since midnight; None for no such time."""
+    """Seconds since midnight from HHMMSS; None if there is no such time."""
     hours, minutes, seconds = int(digits[:2]), int(digits[2:4]), int(digits[4:])
     if hours > 23 or minutes > 59 or seconds > 60:
         return None
@@ -175,7 +175,7 @@ def _seconds(digits: bytes) -> float | None:
 def _angle(
     degrees: bytes, thousandths: bytes, more: Extension | None, line: bytes, is_negative: bool
 ) -> float:
-    """Of degrees and thousandths of minutes [deg]."""
+    """An angle [deg] from degrees and thousandths of minutes."""
     minutes = (int(thousandths) + (more.share(line) if more else 0.0)) / 1000.0
     angle = int(degrees) + minutes / 60.0
     return -angle if is_negative else angle

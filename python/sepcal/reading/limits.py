@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a file may unpack to: at most LEAST, or RATIO times its own size where that is more."""
+"""Limits for unpacking: at most LEAST, or RATIO times the file's own size if that is more."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ BOM = "\ufeff"
 
 
 class Message(NamedTuple):
-    """What is used of a message. `log_time`: [ns]."""
+    """The parts of a message that are used. `log_time`: [ns]."""
 
     channel_id: int
     log_time: int

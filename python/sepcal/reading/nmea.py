@@ -22,7 +22,7 @@ HEADERS = ("lat_deg", "lon_deg", "altitude_m", "gs_kt", "track_deg")
 
 @dataclass
 class Epoch:
-    """What the sentences of one time say."""
+    """The readings that the sentences of one time give."""
 
     time: float
     values: dict[str, float] = field(default_factory=dict)
@@ -150,7 +150,7 @@ def _number(cell: str) -> float:
 
 
 def _seconds(cell: str) -> float:
-    """Of hhmmss.ss, since midnight."""
+    """Seconds since midnight from hhmmss.ss."""
     hours, minutes, seconds = int(cell[:2]), int(cell[2:4]), float(cell[4:])
     if hours > 23 or minutes > 59 or not 0 <= seconds < 61:
         raise ValueError(cell)
@@ -158,7 +158,7 @@ def _seconds(cell: str) -> float:
 
 
 def _angle(cell: str, side: str, digits: int) -> float:
-    """Of dddmm.mmm and N, S, E or W [deg]."""
+    """An angle [deg] from dddmm.mmm and N, S, E or W."""
     if not cell:
         return np.nan
     angle = int(cell[:digits]) + float(cell[digits:]) / 60.0
@@ -166,7 +166,7 @@ def _angle(cell: str, side: str, digits: int) -> float:
 
 
 def _to_date(cell: str) -> str:
-    """Of ddmmyy."""
+    """A date from ddmmyy."""
     try:
         day, month, year = int(cell[:2]), int(cell[2:4]), int(cell[4:6])
         return datetime.date((1900 if year >= 80 else 2000) + year, month, day).isoformat()

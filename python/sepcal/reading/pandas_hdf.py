@@ -14,7 +14,7 @@ DATES = re.compile(r"datetime64(?:\[(s|ms|us|ns))?")
 
 
 class Reader(Protocol):
-    """What reads a dataset (sepcal.reading.hdf5)."""
+    """The function that reads a dataset (sepcal.reading.hdf5)."""
 
     def values_of(self, dataset: Any) -> np.ndarray | None:  # noqa: ANN401
         """Its values."""

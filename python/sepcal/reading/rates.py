@@ -36,7 +36,7 @@ TURNS = {"deg": 360.0, "rad": 2 * np.pi}
 
 
 def kinds_of(table: Table) -> set[str]:
-    """What the table measures: MAGNETIC, AIR, both or nothing."""
+    """The kinds of reading that the table has: MAGNETIC, AIR, both or nothing."""
     quantities = {quantity_of(header)[0] for header in table.columns}
     words = {re.sub(r"[^a-z]", "", quantity) for quantity in quantities}
     kinds = set()

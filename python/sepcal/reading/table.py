@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a reader found: columns of one length by header, and what it decided about them."""
+"""A reader's result: columns of one length by header, and what it decided about them."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Table:
         columns: Numbers (N,) by header, NaN where a cell holds none.
         dates: Columns of dates (N,), datetime64 in UTC, until settle() makes time_s of one.
         labels: Column "maneuver", a text a row, or empty.
-        notes: What was decided, one line each.
-        name: What the file calls the table: a group, a topic, a sheet.
+        notes: Decisions, one line each.
+        name: The table's name in the file: a group, a topic, a sheet.
         left_out: Columns that hold no numbers, until settle() notes them.
         day: From whose midnight, UTC, its time counts; nothing where it has no dates.
     """

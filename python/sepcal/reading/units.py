@@ -57,7 +57,7 @@ def with_unit(name: str, unit: object) -> str:
 
 
 def quantity_of(header: str) -> tuple[str, str]:
-    """What a header is called without its unit, in small letters, and the unit ("": none)."""
+    """A header without its unit, in small letters, and the unit ("": none)."""
     name = header.strip().lower()
     head, _, tail = name.rpartition("_")
     if head and (tail in WRITTEN or tail == "ns"):

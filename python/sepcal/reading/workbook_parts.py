@@ -62,7 +62,7 @@ def copy_if_safe(file: str, folder: str) -> str | None:
 
 
 class _Look:
-    """What a part was seen to hold."""
+    """The contents that were seen in a part."""
 
     def __init__(self) -> None:
         self.cells = self.rows = self.columns = self.texts = 0
@@ -85,7 +85,7 @@ class _Look:
         return not any(map(_is_doubtful, FORMAT.findall(piece)))
 
     def has_dense_box(self) -> bool:
-        """Of a sheet; a chain of formulas names cells too."""
+        """Whether a sheet's cells fill its box densely; a chain of formulas names cells too."""
         box = self.rows * self.columns
         is_dense = box <= min(MOST_CELLS, SPARSEST * self.cells + FEW_CELLS)
         return is_dense or not self.is_sheet

@@ -49,8 +49,8 @@ def report(
         diagnosis: The last's diagnosis of that flight, where it is at hand; else it is made here,
             which takes most of the time.
         files: The calibrations' files, for the command that makes the page again.
-        process_noise: Of a flight path or an aircraft, as of AircraftFit.smooth(): with it the page
-            has the states with their bands, the innovations and the smoothed noise.
+        process_noise: For a flight path or an aircraft, as of AircraftFit.smooth(): with it the
+            page has the states with their bands, the innovations and the smoothed noise.
         progress: A line on standard error that says what is being done, None: where that is a
             terminal, and in a notebook; "tqdm": that of tqdm.auto; or a function of a few words.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What to fly or log next, and how to make the page again."""
+"""Advice on what to fly or log next, and how to make the page again."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def code(names: Iterable[str], between: LiteralString = ", ") -> Html:
 
 
 def warn(last: Fit, section: int) -> list[str]:
-    """What to know of the fit before reading on, a line each; its whole message where it failed.
+    """The sentences of the fit's status, a line each; its whole message where it failed.
 
     `section` has the parameters.
     """
@@ -124,7 +124,7 @@ def advise(material: Material) -> Html:
 
 
 def advise_on_open(last: Fit) -> list[str]:
-    """What to do about each combination that the flight leaves open."""
+    """Says what to do about each combination that the flight leaves open."""
     lines: list[str] = []
     absent = []
     for at in last.unobservable:
@@ -170,7 +170,7 @@ def list_limits(material: Material) -> Html:
 
 
 def list_flights(material: Material) -> Html:
-    """Of a joint fit: whether each flight agrees with the others; empty of one flight."""
+    """Says whether each flight of a joint fit agrees with the others; empty for one flight."""
     departures = material.last.departures
     if not departures:
         return html("")
@@ -211,7 +211,7 @@ def next_command(material: Material, file: str) -> str:
 
 
 def report_command(material: Material, file: str) -> str:
-    """What makes this page again."""
+    """The command that makes this page again."""
     if material.files and material.flight.sha256:
         flights = material.flight_files
         own = material.last.own_model is not None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the error follows: residual against channels, and added-variable plots of candidates."""
+"""Figures of causes: residual against channels, and added-variable plots of candidates."""
 
 from __future__ import annotations
 

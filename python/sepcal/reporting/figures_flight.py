@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the flight covered: directions on a sphere, flow angles, heading and speed."""
+"""Figures of what the flight covered: directions on a sphere, flow angles, heading and speed."""
 
 from __future__ import annotations
 

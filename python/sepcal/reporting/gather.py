@@ -52,7 +52,7 @@ class Material:
 
     @property
     def comparison(self) -> Comparison:
-        """Of the last."""
+        """The comparison of the last calibration."""
         return self.comparisons[-1]
 
     @property
@@ -79,7 +79,7 @@ class Material:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Of the last calibration's fit."""
+        """The options of the last calibration's fit."""
         return dict(self.description["options"])
 
     @property
@@ -89,17 +89,17 @@ class Material:
 
     @property
     def units(self) -> list[str]:
-        """Of the outputs."""
+        """The units of the outputs."""
         return [misfit.unit for misfit in self.comparison.overall]
 
     @property
     def noise(self) -> Array:
-        """Of the outputs on the flight that was fitted: what the 2-sigma bands are made of."""
+        """The outputs' noise on the fitted flight, from which the 2-sigma bands are made."""
         return np.array([self.last.noise[output] for output in self.outputs])
 
     @property
     def floors(self) -> list[float]:
-        """Of the outputs on this flight: innovations alone; its RMSE where that isn't known."""
+        """The rms of the outputs' innovations on this flight; the RMSE where that isn't known."""
         told = self.diagnosis.residual
         return [told[misfit.output].floor or misfit.rmse for misfit in self.comparison.overall]
 
@@ -160,7 +160,7 @@ def try_candidates(
     notes: list[str],
     report_progress: Callable[[str], None],
 ) -> list[Trial]:
-    """What each of the first candidates explains once every parameter has taken its share."""
+    """The part that each first candidate explains once every parameter has taken its share."""
     trials: list[Trial] = []
     for finding in diagnosis.effects:
         if len(trials) == TRIED:

@@ -52,7 +52,7 @@ def compose(material: Material, file: str) -> Page:
 
 
 def pooled_unit(material: Material) -> str:
-    """Of the RMSE over all outputs; empty where they have several: each by its own before."""
+    """The unit of the RMSE over all outputs; empty if they have several."""
     return material.units[0] if len(set(material.units)) == 1 else ""
 
 
@@ -208,7 +208,7 @@ def show_channels(material: Material) -> Section:
 
 
 def show_trials(material: Material) -> Section:
-    """What the first candidates explain."""
+    """The section on what the first candidates explain."""
     comparison = material.comparison
     figures = [
         draw_added_variable(

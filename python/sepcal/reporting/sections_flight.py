@@ -85,15 +85,15 @@ def show_coverage(material: Material) -> Section:
     own = material.last.own_model
     figures, told = draw_coverage(material.last, material.flight, material.figures)
     if own is not None:
-        lead = "What the inputs never were can't be calibrated: beyond, the model is a guess."
+        lead = "Beyond the inputs that the flight covered, the model is extrapolated."
     elif material.last.core.unit == FIELD:
         lead = (
-            "What was never flown can't be calibrated: directions all over the sphere separate the "
+            "The flight must cover what is calibrated: directions all over the sphere separate the "
             "errors of a magnetometer's axes from its hard iron."
         )
     else:
         lead = (
-            "What was never flown can't be calibrated: a full turn separates the wind from "
+            "The flight must cover what is calibrated: a full turn separates the wind from "
             "airspeed errors, a range of airspeeds a scale from a bias."
         )
     blocks: list[str | Figure | Grid] = [Grid(figures, 320)]
@@ -105,7 +105,7 @@ def show_coverage(material: Material) -> Section:
 def draw_coverage(
     calibration: Calibration, flight: Flight, figures: FlightFigures
 ) -> tuple[list[Figure], Html]:
-    """What a flight covered, and that in a sentence; of a magnetometer alone there is one."""
+    """Figures of what a flight covered, and a sentence, which only a magnetometer has."""
     if calibration.own_model is not None:
         return _cover_inputs(figures, calibration.own_model), html("")
     if calibration.core.unit == FIELD:

@@ -56,7 +56,7 @@ def list_facts(facts: Sequence[tuple[str, str]]) -> Html:
 
 
 def list_warnings(warnings: Sequence[str], notes: Sequence[str]) -> Html:
-    """What to know before reading on, and notes on the data, folded away."""
+    """The status and notes on the data, folded away."""
     shown = join("", (html('<p class="warning">{}</p>', warning) for warning in warnings))
     if not notes:
         return shown
@@ -310,7 +310,7 @@ def find_partner(calibration: Fit, i: int) -> tuple[str, float]:
 
 
 def list_directions(unobservable: Sequence[Combination], weak: Sequence[Combination]) -> Html:
-    """What the flight leaves open, in words."""
+    """Says what the flight leaves open."""
     lines = [
         html(
             "The flight can't show <code>{}</code>{}.",

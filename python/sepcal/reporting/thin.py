@@ -38,7 +38,7 @@ def keep_even(size: int, points: int = SCATTERED) -> Rows:
 
 
 def say_thinned(rows: int, points: int = POINTS) -> str:
-    """What was left out of a curve, for the reader; empty where nothing was."""
+    """Tells the reader what was left out of a curve; empty if nothing was."""
     if rows <= points:
         return ""
     return (

@@ -53,7 +53,7 @@ class Flown:
 
     @property
     def comparison(self) -> Comparison:
-        """Of the last."""
+        """The comparison of the last fit."""
         return self.comparisons[-1]
 
     @property
@@ -136,7 +136,7 @@ def _header(columns: Mapping[str, Array], start: str) -> str:
 def _units(
     columns: Mapping[str, Array], smoothed: Smoothed | None, process_noise: Mapping[str, float]
 ) -> dict[str, str]:
-    """Of the headers, "m/s^2" of "mps2"; "1" where there is none."""
+    """Units from the headers, "m/s^2" from "mps2"; "1" without one."""
     if smoothed is None:
         return {}
 
@@ -167,7 +167,7 @@ def compose_flown(flown: Flown, file: str) -> Page:
 
 
 def show_verdict(flown: Flown, title: str, parameters: int) -> Html:
-    """What was fitted and how, the errors left, and what the intervals lack.
+    """Says what was fitted and how, the errors left, and what the intervals lack.
 
     `parameters` is the number of their section.
     """
@@ -284,7 +284,7 @@ def show_channels(flown: Flown) -> Section:
 
 
 def show_states(flown: Flown) -> list[Section]:
-    """What the smoother says: states with bands, innovations, process noise."""
+    """Shows the smoother's states with bands, innovations and process noise."""
     smoothed = flown.smoothed
     if smoothed is None:
         said = (
@@ -317,7 +317,7 @@ def show_states(flown: Flown) -> list[Section]:
     head = [("output", False), ("standard deviation", True), ("lag-one correlation", True)]
     innovations = Section(
         "Innovations",
-        "What each reading brought that the rows before it had not foretold, in the band of 2 of "
+        "Each reading less the filter's prediction of it, in a band of 2 of "
         "the filter's own standard deviations. Scaled by them they should have standard deviation "
         "1 and no correlation with their neighbours; else the process noise is too small or too "
         "large, or the model is wrong.",

@@ -173,7 +173,7 @@ def axis(title: str = "", **more: object) -> dict[str, Any]:
 
 
 def layout(height: int, title: str = "", **more: object) -> dict[str, Any]:
-    """Of a figure `height` px tall; the title is text."""
+    """The layout of a figure `height` px tall; the title is text."""
     legend = {
         "orientation": "h", "x": 0, "y": 1.0, "yanchor": "bottom", "xanchor": "left",
         "itemsizing": "constant", "traceorder": "normal",

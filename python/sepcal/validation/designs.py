@@ -31,7 +31,7 @@ FIELD = 53.0  # [uT]
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """What a study of a model takes."""
+    """The inputs, truth and noise for a study of a model."""
 
     model: Model
     inputs: dict[str, Array]  # (N,) each
@@ -51,7 +51,7 @@ def make_design(name: str, rows: int) -> Design:
 def _design(
     model: Model, inputs: dict[str, Array], truth: Mapping[str, float], *scatter: float
 ) -> Design:
-    """Of parameters that aren't named the truth is zero."""
+    """Makes a design; parameters that aren't named are zero."""
     return Design(
         model,
         inputs,

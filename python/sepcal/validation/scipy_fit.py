@@ -20,7 +20,7 @@ MOST_EVALUATIONS = 2000
 
 @dataclass(frozen=True, eq=False)
 class ScipyFit:
-    """Of the n parameters in the model's order; those that are held have no standard error."""
+    """SciPy's fit of the n parameters in the model's order; those held have no standard error."""
 
     values: Array  # (n,)
     standard_errors: Array  # (n,); NaN of those held
@@ -38,7 +38,7 @@ def least_squares() -> Any:  # noqa: ANN401
 def residuals_of(
     model: Model, data: Columns, noise: Mapping[str, float], values: Mapping[str, float]
 ) -> Array:
-    """What the model leaves over the noise, (N n_z,)."""
+    """The residuals over the noise, (N n_z,)."""
     A, b = model.evaluate(data, {name: values[name] for name in model.nonlinear})
     z = np.stack([np.asarray(data[name], dtype=np.float64) for name in model.outputs], axis=-1)
     left = z - A @ np.array([values[name] for name in model.linear]) - b

@@ -46,7 +46,7 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Validation:
-    """What came of validate(). `print(validation)` shows the table.
+    """The result of validate(). `print(validation)` shows the table.
 
     T trials that both fitted, n parameters, linear, then nonlinear. sepcal begins with its stage
     one, SciPy at the truth.
@@ -244,7 +244,7 @@ def validate(
         truth: A value of every parameter.
         scatter: Standard deviation of every output's noise, by name, or one for all.
         trials: How many.
-        seed: Of the study, as monte_carlo() has it.
+        seed: The study's seed, as monte_carlo() has it.
         executor: The same.
         progress: The same.
         options: FitOptions of sepcal's fits, as bounds, fixed or samples; not those that make it

@@ -115,7 +115,7 @@ std::string to_text(const Applied& applied, const AircraftFit& fitted) {
 
 std::string aircraft_effects_text() {
   Page text = text::catalogue_page("path") + text::catalogue_page("aircraft") +
-              "what each coefficient is a sum of\n";
+              "the regressors of each coefficient\n";
   for (const AeroEquation& equation : standard_equations()) {
     text += page("  {}  {}\n", equation.coefficient, joined(equation.regressors, ", "));
   }

@@ -169,8 +169,8 @@ DiagnosedFit diagnosed_trajectory(const AircraftFit& fitted, const Fit& fit,
   const AircraftModel model = fitted.options.model;
   if (fitted.options.trajectory.scales_about_start) {
     throw Error(
-        "what a trajectory lacks is followed step by step, and a scale about the start is of no "
-        "step; fit without --scale-about-start (scales_about_start) to ask");
+        "diagnose follows a trajectory step by step, which a scale about the start does not allow; "
+        "fit without --scale-about-start (scales_about_start) first");
   }
   EffectKit kit = trajectory_kit(model, laid.base->tables());
   std::vector<std::string> regressors = list_regressors(laid.equations, laid.record, flight);

@@ -181,7 +181,8 @@ void check_constants(const Log& log, std::vector<LogNote>& notes) {
     LogNote note = note_on(log, "frozen", Concern::wrong, {column.header()});
     note.found = fmt::format("{} reads {} in every row", column.header(),
                              say_size(values.front(), std::string(column.logged.unit->suffix)));
-    note.effect = "what never changes can't be calibrated: it is blocked, or not connected";
+    note.effect =
+        "a reading that never changes can't be calibrated: the sensor is blocked or not connected";
     note.advice = "mend the sensor or the logging, and fly again";
     notes.push_back(std::move(note));
   }

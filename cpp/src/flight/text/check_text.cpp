@@ -54,7 +54,7 @@ Page column_table(const FlightCheck& check) {
 std::string_view heading(Concern concern) {
   switch (concern) {
     case Concern::wrong:
-      return "wrong as it stands";
+      return "fix these first";
     case Concern::matters:
       return "matters";
     default:

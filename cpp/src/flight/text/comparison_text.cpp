@@ -86,7 +86,7 @@ std::string to_text(const Comparison& comparison, Detail detail) {
   text += reference_table(comparison);
   text += page("\n{}\n{}", channel_table(comparison), window_table(comparison));
   text += comparison.method == FitMethod::filter_error
-              ? Page("\nrmse and mean of innovations, which the readings before don't foretell, in")
+              ? Page("\nrmse and mean of innovations (readings minus their predictions), in")
               : "\nrmse and mean of measured - modelled, in";
   for (const Misfit& misfit : comparison.overall) {
     text += page(" {} [{}]", misfit.output, misfit.unit);

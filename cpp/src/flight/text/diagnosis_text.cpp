@@ -139,12 +139,14 @@ Page effect_rows(const FlightDiagnosis& result, Detail detail) {
   const auto others = static_cast<std::ptrdiff_t>(effects.size() - shown) - hidden;
   if (others > 0) text += page("and {} more\n", others);
   if (some_unpredicted) {
-    text += "not held out: significant, but rows left out gain no more than by chance\n";
+    text +=
+        "not held out: significant, but on rows held out it removes no more error than chance "
+        "would\n";
   }
   if (some_small) {
     text +=
-        "too small: significant, but it takes less than 1 % on rows held out, as errors of what "
-        "enters the model do by themselves\n";
+        "too small: significant, but it removes less than 1 % of the error on rows held out, as "
+        "noise in the inputs can\n";
   }
   if (hidden > 0) {
     text += page("{} cannot be seen in this flight:", hidden);
@@ -266,12 +268,12 @@ std::string to_text(const FlightDiagnosis& result, Detail detail) {
   Page text = page("{}: {} of {} rows of {}\n{}\n", result.model, result.flight.rows_used,
                    result.flight.rows, result.flight.file, verdict_sentence(result));
   if (!diagnosis.left_undone.empty()) {
-    text += page("there was no time for: {}\n", joined(diagnosis.left_undone, ", "));
+    text += page("skipped for lack of time: {}\n", joined(diagnosis.left_undone, ", "));
   }
   for (const UnmeasuredCause& cause : diagnosis.unmeasured) text += page("{}\n", describe(cause));
   text += "\n";
   if (result.status != FitStatus::converged) {
-    text += page("of a fit whose status is {}\n{}\n", to_string(result.status),
+    text += page("the status of the fit is {}\n{}\n", to_string(result.status),
                  text::sentence_lines(result.message, detail));
   }
   text += effect_rows(result, detail);

@@ -56,7 +56,7 @@ Page stage_line(const Fit& fit, const CalibrationOptions& options) {
                   : page("stage one: {} {}, {} local minim{}", options.fit.samples, points,
                          one.minima.size(), one.minima.size() == 1 ? "um" : "a");
   for (const std::string& flat : one.flat_directions) text += page(", flat along {}", flat);
-  return text + page("; stage two: {}, {} iteration{}, R settled in {}\n",
+  return text + page("; stage two: {}, {} iteration{}, noise covariance converged in {}\n",
                      to_string(fit.second_stage), fit.iterations, fit.iterations == 1 ? "" : "s",
                      fit.noise_iterations);
 }

@@ -266,7 +266,7 @@ bool is_above_floor(const Diagnosis& found) {
 
 /// The flight that would tell an effect from noise.
 std::string way_to_tell(const EffectFinding& effect) {
-  if (effect.drivers.empty()) return "what comes again in another flight is no noise";
+  if (effect.drivers.empty()) return "see whether it comes again in another flight";
   if (effect.drivers.front() == "time") return "fly again with the maneuvers in another order";
   return fmt::format("fly again with {} changing at other times", effect.drivers.front());
 }
