@@ -2,6 +2,7 @@
 #include "diagnosis/instrument_noise.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -2,6 +2,7 @@
 #include "sepcal/detail/simulation/truth.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of effects as kits, from which effects are made by name.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "flight/catalogue/effect_channels.hpp"
 #include "flight/catalogue/effect_table.hpp"

@@ -2,6 +2,7 @@
 #include "flight/probes/attitude_independent_start.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

@@ -2,6 +2,7 @@
 #include "flight/verbs/held_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <ranges>
