@@ -8,7 +8,7 @@ make_wheel() {
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache CMAKE_GENERATOR=Ninja CXX=c++
   quietly "pip wheel" .venv/bin/python -m pip wheel --disable-pip-version-check --no-deps \
     --no-build-isolation --check-build-dependencies --wheel-dir "$1" \
-    --config-settings=build-dir=build-wheel/native --config-settings=cmake.define.SEPCAL_WERROR=ON \
+    --config-settings=build-dir=build-pip --config-settings=cmake.define.SEPCAL_WERROR=ON \
     --config-settings=cmake.define.SEPCAL_UNITY=ON .
 }
 
