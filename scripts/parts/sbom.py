@@ -5,10 +5,10 @@ Usage: sbom.py [-o FILE] BINARY|WHEEL...
 
 Shared libraries are those that readelf finds in a binary, and in these again; a wheel is unpacked,
 and what it brings itself counts as its file. What is compiled in (headers, and Ceres where it is an
-archive) is looked for where the compiler finds it. Names, versions and licences are dpkg's: a
-licence is that of `Files: *` in a package's copyright file, and those of single files stand in a
-comment. What dpkg doesn't know has NOASSERTION. SOURCE_DATE_EPOCH, where it is set, is the time of
-making it.
+archive) is looked for where the compiler finds it; of a wheel it is what its licenses/linked/ has
+copyright files of. Names, versions and licences are dpkg's: a licence is that of `Files: *` in a
+package's copyright file, and those of single files stand in a comment. What dpkg doesn't know has
+NOASSERTION. SOURCE_DATE_EPOCH, where it is set, is the time of making it.
 """
 
 from __future__ import annotations
@@ -270,6 +270,17 @@ def add_compiled_in(bill: Bill) -> None:
         bill.relate("SPDXRef-Package-sepcal", "STATIC_LINK", package.id)
 
 
+def add_linked(folder: Path, bill: Bill) -> bool:
+    """What an unpacked wheel says that it was linked with; False where it says nothing."""
+    linked = sorted(folder.glob("*.dist-info/licenses/linked/*"))
+    for file in linked:
+        paragraphs = read_paragraphs(file.read_text(errors="replace"))
+        licence = find_licence(paragraphs, file.name, bill)
+        package = Package(file.name, UNKNOWN, licence, others=find_others(paragraphs))
+        bill.relate("SPDXRef-Package-sepcal", "STATIC_LINK", bill.add(package).id)
+    return bool(linked)
+
+
 def add_python(bill: Bill, project: Json) -> None:
     """What the modules are compiled with, and what the package needs."""
     try:
@@ -388,9 +399,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with tempfile.TemporaryDirectory() as folder:
         wheels = [file for file in chosen.binaries if file.suffix == ".whl"]
         bare = [Binary(file.name, file) for file in chosen.binaries if file not in wheels]
-        for binaries in (bare, *(unpack(wheel, Path(folder)) for wheel in wheels)):
-            add_binaries(binaries, bill)
-        add_compiled_in(bill)
+        add_binaries(bare, bill)
+        told = []
+        for wheel in wheels:
+            add_binaries(unpack(wheel, Path(folder)), bill)
+            told.append(add_linked(Path(folder) / wheel.stem, bill))
+        if bare or not all(told):
+            add_compiled_in(bill)
         if any(binary.path.name.startswith(("_core.", "_states.")) for binary in bill.files):
             project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
             add_python(bill, project)

@@ -149,6 +149,21 @@ def test_what_a_wheel_brings_is_its_file_and_no_package(tmp_path: Path) -> None:
     assert tuple(files.values()) in pairs or tuple(files.values())[::-1] in pairs
 
 
+def test_what_a_wheel_says_it_was_linked_with_is_in_place_of_what_a_compiler_finds(
+    tmp_path: Path,
+) -> None:
+    """Its copyright files."""
+    wheel = tmp_path / "sepcal-0.1.0-py3-none-any.whl"
+    text = "Format: https://www.debian.org/\n\nFiles: *\nCopyright: 2020 someone\nLicense: MIT\n"
+    with zipfile.ZipFile(wheel, "w") as opened:
+        opened.write(shutil.which("readelf") or "", "sepcal/bin/sepcal")
+        opened.writestr("sepcal-0.1.0.dist-info/licenses/linked/nlopt", text)
+    document = bill_of(wheel)
+    licences = {package["name"]: package["licenseDeclared"] for package in document["packages"]}
+    assert licences["nlopt"] == "MIT"
+    assert "libeigen3-dev" not in licences
+
+
 def test_licences_are_told_as_spdx_tells_them() -> None:
     """The licence of all files; others in a comment; one that SPDX doesn't list with its text."""
     text = (
