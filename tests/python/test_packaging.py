@@ -23,14 +23,12 @@ VERSION = re.search(r"project\(\s*sepcal\s+VERSION\s+([0-9.]+)", CMAKE)[1]
 NAMES = {
     "Eigen3": ("libeigen3-dev", "eigen3", "eigen", "eigen", "eigen"),
     "Ceres": ("libceres-dev", "ceres", "ceres-solver", "ceres-solver", "ceres-solver"),
-    "glog": (None, "glog", "glog", "glog", "glog"),  # Debian's Ceres depends on it
     "NLopt": ("libnlopt-dev libnlopt-cxx-dev", "nlopt", "nlopt", "nlopt", "nlopt"),
     "fmt": ("libfmt-dev", "fmt", "fmt", "fmt", "fmt"),
     "SEPCAL_XSIMD_INCLUDE_DIR": ("libxsimd-dev", "xsimd", "xsimd", "xsimd", "xsimd"),
     "nlohmann_json": (
         "nlohmann-json3-dev", "nlohmann-json", "nlohmann_json", "nlohmann_json", "nlohmann-json"
     ),
-    "OpenSSL": ("libssl-dev", "openssl", "openssl", "openssl", "openssl@3"),
     "ZLIB": ("zlib1g-dev", "zlib", "zlib", "zlib", "zlib"),
     "zstd": ("libzstd-dev", "zstd", "zstd", "zstd", "zstd"),
     "CLI11": ("libcli11-dev", None, None, "cli11", "cli11"),
@@ -72,7 +70,8 @@ def named(manager: str, *parts: str) -> set[str]:
 
 def least() -> dict[str, str]:
     """The oldest version that CMake accepts, by its names."""
-    return dict(re.findall(r"find_package\((\w+) ([\d.]+)", CMAKE))
+    asked = r"find_package\((\w+) (\d[\d.]*)|(\w+)_VERSION VERSION_LESS (\d[\d.]*)"
+    return {name or other: old or least for name, old, other, least in re.findall(asked, CMAKE)}
 
 
 def debian_control() -> list[dict[str, str]]:

@@ -28,10 +28,8 @@ BUILT = [
 # Of CMakeLists.txt, what is no package of dpkg's or is in the C library.
 NOT_LISTED = {"Threads"}
 LIBRARIES = {  # by CMake's names, where the binary names a library
-    "glog": "libglog",
     "NLopt": "libnlopt",
     "fmt": "libfmt",
-    "OpenSSL": "libcrypto",
     "ZLIB": "libz.so",
     "zstd": "libzstd",
 }
@@ -108,7 +106,7 @@ def test_what_cmake_looks_for_is_listed(document: dict) -> None:
     for name in asked:
         assert (name in sbom.COMPILED_IN) != (name in LIBRARIES), name
         assert LIBRARIES.get(name, "") in needed
-    assert len(asked) > 10
+    assert len(asked) >= 10
     compiled_in = [
         relation
         for relation in document["relationships"]
