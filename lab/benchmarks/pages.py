@@ -30,7 +30,7 @@ Json = dict[str, Any]
 def describe(race: Json) -> str:
     """Where and of what a table is."""
     machine = race["machine"]
-    return f"{race['commit']} on {machine['processor']} ({machine['instructions']})"
+    return f"`{race['commit']}` on {machine['processor']} ({machine['instructions']})"
 
 
 def tables(held: Json) -> str:

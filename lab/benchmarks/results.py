@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import json
 import platform
-import subprocess
 from pathlib import Path
 from typing import Any
 
 from benchmarks.race import Line, Result
 from benchmarks.races import BASELINE, RACES
+from measured import find_commit
 
 Json = dict[str, Any]
 
@@ -29,17 +29,6 @@ def describe_machine() -> Json:
         "instructions": widest,
         "system": platform.platform(terse=True),
     }
-
-
-def commit() -> str:
-    """What is measured; "-dirty" where something else than results differs from it."""
-
-    def ask(*arguments: str) -> str:
-        asked = subprocess.run(["git", *arguments], capture_output=True, text=True, check=False)
-        return asked.stdout.strip()
-
-    changed = ask("status", "--porcelain", "--untracked-files=no", "--", ":!lab/benchmarks/results")
-    return ask("describe", "--always") + ("-dirty" if changed else "")
 
 
 def merge(old: Json, new: list[Result], of: Json) -> Json:
@@ -64,7 +53,7 @@ def write(folder: Path, new: list[Result]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / "latest.json"
     old = json.loads(file.read_text()) if file.exists() else {}
-    held = merge(old, new, {"commit": commit(), "machine": describe_machine()})
+    held = merge(old, new, {"commit": find_commit(), "machine": describe_machine()})
     file.write_text(json.dumps(held, indent=1) + "\n")
     tables = [result_of(entry).table() for entry in held["races"]]
     (folder / "latest.md").write_text("\n\n".join(["# Benchmark results", *tables]) + "\n")

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-sys.path[:0] = [str(ROOT / "build" / "python"), str(ROOT / "tests")]
+sys.path[:0] = [str(ROOT / part) for part in ("build/python", "tests", "lab")]
 
 import sepcal  # noqa: E402
+from measured import measured_line  # noqa: E402
 from oracle import nist, nist_peers  # noqa: E402
 from oracle.nist_peers import Answer  # noqa: E402
 
@@ -24,8 +25,10 @@ PROGRAMS = (*(f"sepcal {stage}" for stage in OURS), *nist_peers.PEERS)
 AIM = {"lower": 8.0, "average": 8.0, "higher": 6.0}  # digits of the parameters
 SOLVED = 4.0
 
-HEAD = """# NIST's nonlinear regression sets
+TITLE = "# NIST's nonlinear regression sets\n"
+ROOMS = ("estimation", "model", "numerics")
 
+HEAD = """
 The 27 [Statistical Reference Datasets](https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml)
 for nonlinear regression have values certified to 11 digits and two starts each: the first
 far off, the second nearer. This page says how many digits sepcal and others reach. It is written
@@ -187,7 +190,15 @@ def main() -> None:
     parser.add_argument("-o", dest="file", type=Path, default=ROOT / "docs" / "nist.md")
     file: Path = parser.parse_args().file
     lines = run_all()
-    page = [HEAD, *summarise(lines), MEANING.rstrip(), *tabulate(lines), DIFFERENCES.rstrip()]
+    page = [
+        TITLE,
+        measured_line(ROOMS),
+        HEAD,
+        *summarise(lines),
+        MEANING.rstrip(),
+        *tabulate(lines),
+        DIFFERENCES.rstrip(),
+    ]
     page += [*reach_by_differences(lines), REMARKS.rstrip()]
     file.write_text("\n".join(page) + "\n")
 

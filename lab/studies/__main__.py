@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from measured import find_commit
 from sepcal import Error
 from sepcal.__main__ import BAD_INPUT, Parser
 from sepcal.progress import show_progress
@@ -105,19 +106,20 @@ def in_words(finding: Finding) -> str:
 
 
 def write_row(file: Path, study: Study, typed: Sequence[str], figures: str) -> None:
-    """Replaces the study's row in the file's table, or adds it as the last.
+    """Replaces the study's row in the file's first table, or adds it as the last there.
 
     Raises Error where the file can't be read or written.
     """
     command = shlex.join(["scripts/study", *without(("--record", "--processes"), typed)])
     minutes = f"{sum(os.times()[:4]) / 60.0:.1f}"
-    cells = (f"`{study.name}`", f"`{command}`", study.shows, figures, minutes)
+    cells = (f"`{study.name}`", f"`{command}`", study.shows, figures, minutes, f"`{find_commit()}`")
     row = f"| {' | '.join(cells)} |"
     try:
         lines = file.read_text(encoding="utf-8").splitlines()
         at = [i for i, line in enumerate(lines) if line.startswith(f"| `{study.name}` |")]
         rows = [i for i, line in enumerate(lines) if line.startswith("|")]
-        first, last = (at[0], at[0] + 1) if at else (rows[-1] + 1,) * 2 if rows else (0, 0)
+        behind = next((i + 1 for i in rows if i + 1 not in rows), 0)
+        first, last = (at[0], at[0] + 1) if at else (behind, behind)
         file.write_text("\n".join([*lines[:first], row, *lines[last:]]) + "\n", encoding="utf-8")
     except OSError as error:
         raise Error(f"{file}: {error.strerror}") from error

@@ -67,7 +67,6 @@ class Sepcal(ConanFile):
         self.requires("eigen/3.4.0", transitive_headers=True)
         if self.options.engine:
             self.requires("ceres-solver/2.1.0", transitive_headers=True, transitive_libs=True)
-            self.requires("glog/0.6.0", transitive_libs=True)
             self.requires("nlopt/2.7.1")
             self.requires("fmt/[>=9 <12]")
             self.requires("xsimd/[>=8.1 <14]")
@@ -113,7 +112,7 @@ class Sepcal(ConanFile):
         core.libdirs = []
         core.bindirs = []
         if self.options.engine:
-            others = ["ceres-solver::ceres-solver", "glog::glog", "nlopt::nlopt"]
+            others = ["ceres-solver::ceres-solver", "nlopt::nlopt"]
             self._archive("sepcal", "core", *others, "fmt::fmt", "xsimd::xsimd")
             self._archive("sepcal_states", "sepcal")
         if self.options.flight:

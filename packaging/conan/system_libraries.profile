@@ -7,7 +7,6 @@ compiler.cppstd=20
 [platform_requires]
 eigen/3.4.0
 ceres-solver/2.1.0
-glog/0.6.0
 nlopt/2.7.1
 fmt/9.1.0
 xsimd/8.1.0

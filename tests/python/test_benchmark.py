@@ -186,7 +186,7 @@ def test_a_picture_is_drawn_of_what_was_measured(tmp_path):
     assert pages.series(held, "Growth with rows") == ([1000.0, 10000.0], [0.05, 0.1])
     pages.draw(held, tmp_path / "p.svg")
     assert "<svg" in (tmp_path / "p.svg").read_text()
-    assert pages.tables(held).startswith("Measured: abc on P (avx2).")
+    assert pages.tables(held).startswith("Measured: `abc` on P (avx2).")
 
 
 def test_a_child_is_charged_for_its_processor_time():

@@ -2,6 +2,7 @@
 """scripts/study: its list, bad usage, exit codes, and the row that it keeps in docs/studies.md."""
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -75,7 +76,7 @@ def test_what_is_outside_its_limits_is_exit_code_1(tossed, capsys):
 
 def test_the_row_of_a_study_is_replaced_and_the_rest_stays(tossed, tmp_path):
     page = tmp_path / "studies.md"
-    page.write_text("# Studies\n\n| study |\n|---|\n| `dice` | six |\n\nThe end.\n")
+    page.write_text("# Studies\n\n| study |\n|---|\n| `dice` | six |\n\n| rate |\n|---|\n")
     for count in ("2", "3"):
         typed = ["coins", "--processes", "1", "--seeds", count, "--record", str(page)]
         assert command.main(typed) == 0
@@ -84,7 +85,8 @@ def test_the_row_of_a_study_is_replaced_and_the_rest_stays(tossed, tmp_path):
     assert lines[5].startswith(
         "| `coins` | `scripts/study coins --seeds 3` | 50 % are | 3 heads; 1 of 1 within limits | "
     )
-    assert lines[6:] == ["", "The end."]
+    assert re.search(r" \| `[0-9a-f]{7,40}(-dirty)?` \|$", lines[5])
+    assert lines[6:] == ["", "| rate |", "|---|"]
     assert command.main(["coins", "--record", str(tmp_path / "none.md")]) == 2
 
 

@@ -7,11 +7,16 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from measured import measured_line
 from sepcal._core import Error
 from sepcal.quantiles import upper_limit
 from studies.hidden_effects.experiments import StudyOptions
 
 Row = dict[str, Any]
+ROOMS = (
+    "diagnosis", "effects", "estimation", "noise", "simulation", "flight/catalogue", "flight/verbs",
+    "lab/studies/hidden_effects",
+)  # fmt: skip
 VERDICTS = ("unexplained", "effect_missing", "slow_change", "adequate")
 
 
@@ -52,9 +57,10 @@ def _head(options: StudyOptions, picture: str) -> str:
     )
     return f"""# Hidden effects: what is found, and what isn't
 
+{measured_line(ROOMS)}
+
 This page says how often `diagnose` finds a physical effect that the model lacks, and how often it
-names one that isn't there. Read it to judge a verdict. This command writes the page
-([studies.md](studies.md) names the commit):
+names one that isn't there. Read it to judge a verdict. This command writes the page:
 
     {command}
 

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from measured import renew_line
 from sepcal import Error
 from studies.paper import (
     bounds,
@@ -76,6 +77,8 @@ def run(arguments: argparse.Namespace, report_progress: Progress) -> Outcome:
             write_tables(arguments.output, part.name, result)
         if arguments.figures is not None:
             draw_figures(arguments.figures, result)
+    if arguments.output is not None and len(results) == len(PARTS):
+        arguments.output.write_text(renewed(arguments.output), encoding="utf-8")
     print()
     findings = [finding for result in results.values() for finding in result.findings]
     return Outcome(f"{', '.join(results)}: {options.runs} runs", findings)
@@ -92,6 +95,8 @@ def check(arguments: argparse.Namespace, names: Sequence[str]) -> None:
     if arguments.output is not None:
         for name in names:
             find_place(arguments.output, name)
+        if len(names) == len(PARTS):
+            renewed(arguments.output)
     file, folder = arguments.json, arguments.figures
     if file is not None and (file.is_dir() or not file.parent.is_dir()):
         raise Error(f"--json {file} is no file in a folder that there is")
@@ -162,6 +167,18 @@ def write_tables(page: Path, name: str, result: Result) -> None:
         find_place(page, name), f"<!-- tables of {name} -->\n{tables}\n<!-- end -->"
     )
     page.write_text(text, encoding="utf-8")
+
+
+def renewed(page: Path) -> str:
+    """The page with the commit of what was measured, which then is that of all tables.
+
+    Raises:
+        Error: It has no line for it.
+    """
+    try:
+        return renew_line(page.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise Error(f"-o {page}: {error}") from error
 
 
 STUDY = Study(
