@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "numerics/decompositions.hpp"
+#include "sepcal/detail/eigen.hpp"
 
 namespace sepcal::numerics {
 namespace {
