@@ -3,8 +3,8 @@
 
 Usage: pack_wheel.py pack STAGE ROOT PYTHON PROCESSOR FOLDER
        pack_wheel.py show WHEEL
-STAGE has sepcal/ with modules, programs and the library; ROOT the licences of what is linked in, as
-Debian's packages have them; PYTHON is 3.11, say.
+STAGE has sepcal/ with modules, programs and the library; ROOT/linked the licences of what is linked
+in, a file NAME_VERSION each; PYTHON is 3.11, say.
 """
 
 from __future__ import annotations
@@ -20,11 +20,6 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parents[2] / "python" / "sepcal"
 # The lowest release of manylinux that scripts/wheel aims at.
 OLDEST_GLIBC = (2, 28)
-# Debian's packages of which nothing is linked in: the compiler's root.
-NOT_LINKED = re.compile(
-    r"libc6|libc-|libcrypt|libnsl|libtirpc|linux-libc|gcc-|libgcc|lib(gss|k5|krb|key|com)|"
-    r"debconf|dpkg|perl|tar$|lib(acl|bz2|lzma|pcre|selinux|ssl)|zlib1g"
-)
 
 
 def binaries_in(folder: Path) -> list[Path]:
@@ -82,13 +77,13 @@ def pack(stage: Path, root: Path, python: str, processor: str, folder: Path) -> 
     files[f"{info}/WHEEL"] = (
         f"Wheel-Version: 1.0\nGenerator: sepcal\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
     )
-    for copyright in sorted((root / "usr" / "share" / "doc").glob("*/copyright")):
-        if not NOT_LINKED.match(copyright.parent.name):
-            files[f"{info}/licenses/linked/{copyright.parent.name}"] = copyright.read_bytes()
+    for licence in sorted((root / "linked").iterdir()):
+        files[f"{info}/licenses/linked/{licence.name}"] = licence.read_bytes()
     for licence in sorted(
         Path(str(distribution("pybind11").locate_file(""))).glob("pybind11-*/licenses/*")
     ):
-        files[f"{info}/licenses/linked/pybind11"] = licence.read_bytes()
+        version = distribution("pybind11").version
+        files[f"{info}/licenses/linked/pybind11_{version}"] = licence.read_bytes()
     for file in sorted(PACKAGE.rglob("*")):
         if file.is_file() and "__pycache__" not in file.parts:
             files[f"sepcal/{file.relative_to(PACKAGE)}"] = file.read_bytes()

@@ -22,7 +22,7 @@ make_wheel_tools() {
 # make_portable_root FOLDER PROCESSOR: FOLDER/root has glibc 2.31 of Debian 11 and the headers of libraries
 # that are nothing else.
 make_portable_root() {
-  local folder=$1 root=$1/root triplet=$2-linux-gnu link
+  local folder=$1 root=$1/root triplet=$2-linux-gnu link package
   if [[ -f $folder/root-is-made ]]; then return; fi
   say "making the root of an older Debian for $2"
   rm -rf "$folder"
@@ -49,10 +49,19 @@ make_portable_root() {
   else
     cp -r "/usr/$triplet/include/c++/12" "$root/usr/include/c++"
   fi
-  install -D /usr/share/doc/gcc-12-base/copyright "$root/usr/share/doc/libstdc++/copyright" # it is linked in
+  for package in "$folder"/here/cache/archives/*.deb; do
+    tell_linked "$root" "$(dpkg-deb --field "$package" Package)" "$(dpkg-deb --field "$package" Version)"
+  done
+  # Its standard library is linked in.
+  tell_linked "$root" gcc-12 "$("$triplet-gcc-12" -dumpfullversion)" /usr/share/doc/gcc-12-base/copyright
   quietly "older_glibc.c" "$triplet-gcc-12" --sysroot="$root" -O2 -fPIC -fvisibility=hidden -Wall -Wextra \
     -c scripts/parts/older_glibc.c -o "$folder/older_glibc.o"
   touch "$folder/root-is-made"
+}
+
+# tell_linked ROOT NAME VERSION [FILE]: what is linked in, with its licence, in ROOT/linked/NAME_VERSION.
+tell_linked() {
+  install -D --mode=644 "${4:-$1/usr/share/doc/$2/copyright}" "$1/linked/$2_${3#*:}"
 }
 
 # portable_cmake FOLDER PROCESSOR SOURCE BUILD [OPTION]...: configures with the root's compiler.
@@ -77,7 +86,7 @@ make_portable_libraries() {
       apt-get source --download-only "$package")
     tar --extract --directory "$source" --strip-components 1 --file "$(find "$source" -name '*.orig.tar.*' ! -name '*.asc')"
     tar --extract --directory "$source" --file "$(ls "$source"/*.debian.tar.*)" debian/copyright
-    install -D "$source/debian/copyright" "$folder/root/usr/share/doc/$package/copyright"
+    tell_linked "$folder/root" "$package" "$(sed -n 's/^Version: //p' "$source"/*.dsc)" "$source/debian/copyright"
   done
   leave_luksan_out "$folder/sources/nlopt"
   install -D /dev/null "$folder/sources/zlib/win32/zlib1.rc" # named for all systems, not in Debian's source

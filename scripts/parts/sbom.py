@@ -275,8 +275,9 @@ def add_linked(folder: Path, bill: Bill) -> bool:
     linked = sorted(folder.glob("*.dist-info/licenses/linked/*"))
     for file in linked:
         paragraphs = read_paragraphs(file.read_text(errors="replace"))
-        licence = find_licence(paragraphs, file.name, bill)
-        package = Package(file.name, UNKNOWN, licence, others=find_others(paragraphs))
+        name, _, version = file.name.partition("_")
+        licence = find_licence(paragraphs, name, bill)
+        package = Package(name, version or UNKNOWN, licence, others=find_others(paragraphs))
         bill.relate("SPDXRef-Package-sepcal", "STATIC_LINK", bill.add(package).id)
     return bool(linked)
 

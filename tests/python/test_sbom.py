@@ -157,10 +157,12 @@ def test_what_a_wheel_says_it_was_linked_with_is_in_place_of_what_a_compiler_fin
     text = "Format: https://www.debian.org/\n\nFiles: *\nCopyright: 2020 someone\nLicense: MIT\n"
     with zipfile.ZipFile(wheel, "w") as opened:
         opened.write(shutil.which("readelf") or "", "sepcal/bin/sepcal")
-        opened.writestr("sepcal-0.1.0.dist-info/licenses/linked/nlopt", text)
+        opened.writestr("sepcal-0.1.0.dist-info/licenses/linked/nlopt_2.7.1-5", text)
     document = bill_of(wheel)
     licences = {package["name"]: package["licenseDeclared"] for package in document["packages"]}
     assert licences["nlopt"] == "MIT"
+    versions = {package["name"]: package["versionInfo"] for package in document["packages"]}
+    assert versions["nlopt"] == "2.7.1-5"
     assert "libeigen3-dev" not in licences
 
 
