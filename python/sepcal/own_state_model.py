@@ -67,7 +67,7 @@ class StateModel(Protocol):
     are the last axis: x[0], u.aileron and p[0] have the shape (N,), and an answer is an array or
     nested lists of such and of plain numbers.
 
-    Where these are there, they say more:
+    A class may also have:
         linear_dynamic: Names of those in `nonlinear` that enter rate() and at() linearly beside a
             state that does: they and the initial states are linear parameters then. May be empty.
         start(u, z): x(0), n_x numbers, from the first row's inputs and outputs (NaN where missing):
