@@ -98,7 +98,7 @@ def write_index(folder: Path) -> None:
         if heading.startswith("To work"):
             pages += ["packages", "CHANGELOG"]
         contents.append(toctree(heading, pages))
-    lists = re.sub(r"\[[\w.]+\]\(", "[](", lists)  # a page's title in place of its file
+    lists = re.sub(r"\[[\w.-]+\]\(", "[](", lists)  # a page's title in place of its file
     front = lead_here((SITE / "front.md").read_text(encoding="utf-8"))
     write(folder / "index.md", front + lists + "\n" + "\n".join(contents))
 
