@@ -82,8 +82,8 @@ def pack(stage: Path, root: Path, python: str, processor: str, folder: Path) -> 
     for licence in sorted(
         Path(str(distribution("pybind11").locate_file(""))).glob("pybind11-*/licenses/*")
     ):
-        version = distribution("pybind11").version
-        files[f"{info}/licenses/linked/pybind11_{version}"] = licence.read_bytes()
+        linked = f"{info}/licenses/linked/pybind11_{distribution('pybind11').version}"
+        files[linked] = licence.read_bytes()
     for file in sorted(PACKAGE.rglob("*")):
         if file.is_file() and "__pycache__" not in file.parts:
             files[f"sepcal/{file.relative_to(PACKAGE)}"] = file.read_bytes()
