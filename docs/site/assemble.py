@@ -24,6 +24,7 @@ PAGES = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md")
 NAMED = ("LICENSE", "apps", "cpp", "examples", "lab", "packaging", "python", "scripts", "tests")
 VALUE = re.compile(r"<(initializer|defval)>(.*?)</\1>", re.DOTALL)
 PLAIN = re.compile(r"(?:= *)?(?:[\w.:+*/() -]{1,60}|\{\})")
+LONG = 120  # characters in a cell of a table
 # Hundreds of names would swell the sidebar of every page, and take ten times as long.
 UP = ":orphan:\n\n:doc:`{1} reference <{0}>`\n"
 HOUSES = {  # of the headers, in the order in which people meet them
@@ -138,10 +139,12 @@ def write_python(folder: Path) -> None:
 
 
 def first_sentence(header: Path) -> str:
-    """Of the comment that opens a header."""
-    text = header.read_text(encoding="utf-8").split("#pragma once")[0]
-    said = " ".join(line[3:] for line in text.splitlines()[1:] if line.startswith("// "))
-    sentence = re.split(r"[.:;]\s", said)[0].rstrip(".")
+    """Of the comment that opens a header; of a long one what stands before its colon."""
+    text = re.split(r"^#", header.read_text(encoding="utf-8"), maxsplit=1, flags=re.M)[0]
+    said = " ".join(line[3:] for line in text.splitlines()[1:] if line.startswith(("// ", " * ")))
+    sentence = re.split(r"(?<!\bEq)(?<!\bEqs)\.\s", said)[0].rstrip(".")
+    if len(sentence) > LONG:
+        sentence = re.split(r"[:;]\s", sentence)[0]
     return sentence.replace("|", "\\|").replace("<", "&lt;").replace("*", "\\*")
 
 

@@ -36,6 +36,8 @@ def filter_lines(lines: list[str]) -> list[str]:
         if opening:
             is_licence = "SPDX" in line
             done.append("/// \\file" if is_licence else "///" + escape(line[2:]))
+        elif line == "/*" and len(done) == 1:  # atop a header of C
+            done.append("/** \\file")
         elif whole := WHOLE.match(line):
             done.append(whole["mark"] + escape(whole["text"]))
             beside = False
