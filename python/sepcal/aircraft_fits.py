@@ -474,7 +474,7 @@ class AircraftFit(Fit):
             changes: "find" or "follow" parameters that jump, as in sepcal.track().
             initial_states: Standard deviations of states where a segment begins [as good as
                 unknown].
-            row_iterations: For iekf: the largest number in a row.
+            row_iterations: For iekf: the largest number of iterations per row.
             tolerance: For iekf.
             forgetting: Forgetting factor, above 0, at most 1: multiplies older rows' weights.
             memory: As in sepcal.track().

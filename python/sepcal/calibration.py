@@ -222,7 +222,7 @@ class Calibration(Fit):
             noise: Standard deviation of every output, in the first rows too [the start's].
             walk: Random walks of parameters, as in sepcal.track().
             changes: "find" or "follow" parameters that jump, as in sepcal.track().
-            row_iterations: For iekf: the largest number in a row.
+            row_iterations: For iekf: the largest number of iterations per row.
             tolerance: For iekf.
             forgetting: Forgetting factor, above 0, at most 1: multiplies older rows' weights.
             memory: As in sepcal.track().

@@ -31,7 +31,7 @@ class InputDesign:
         signals: {header: (N,)}; zero in the first row and in the last.
         frequencies: {header: (k,)} [Hz] of a multisine.
         peak_factors: {header: (max - min) / (2 sqrt(2) rms)} of a multisine, 1 of a single sine.
-        step: For 3-2-1-1, how long a "1" lasts [s]; NaN of a multisine.
+        step: For 3-2-1-1, how long a "1" lasts [s]; NaN for a multisine.
         share_in_band: For 3-2-1-1, the share of its energy in the band; NaN for a multisine.
 
     Example:

@@ -227,7 +227,7 @@ def track(  # type: ignore[misc]  # its process_noise drives the filter, not err
             for.
         initial_states: For states at the start of a segment that `start_rows` hasn't fitted: {name:
             sd} [ten times the largest value of the state on the way, as good as unknown].
-        row_iterations: For iekf: the largest number in a row.
+        row_iterations: For iekf: the largest number of iterations per row.
         tolerance: For iekf: the shortest step, in standard deviations of the estimate.
         forgetting: Forgetting factor, above 0, at most 1: multiplies older rows' weights.
         memory: For rls, ekf, iekf and srif: how many rows count while innovations are as large as
