@@ -10,7 +10,7 @@ bare_roots=("bookworm 3.11" "trixie 3.13" "noble 3.12")
 try_wheels() {
   local line suite python wheel tried=0
   install_packages scripts/apt-packages-wheel.txt
-  make_wheel_tools
+  make_tools build-wheel/tools scripts/requirements-wheel.txt
   for line in "${bare_roots[@]}"; do
     read -r suite python <<<"$line"
     for wheel; do

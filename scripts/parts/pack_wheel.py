@@ -10,12 +10,13 @@ in, a file NAME_VERSION each; PYTHON is 3.11, say.
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
 import tempfile
 import zipfile
 from importlib.metadata import distribution
 from pathlib import Path
+
+from sbom import ask, is_elf, needed
 
 PACKAGE = Path(__file__).resolve().parents[2] / "python" / "sepcal"
 # The lowest release of manylinux that scripts/wheel aims at.
@@ -24,28 +25,14 @@ OLDEST_GLIBC = (2, 28)
 
 def binaries_in(folder: Path) -> list[Path]:
     """What the loader reads: modules, the library, programs."""
-    return [
-        file
-        for file in sorted(folder.rglob("*"))
-        if file.is_file() and file.read_bytes()[:4] == b"\x7fELF"
-    ]
-
-
-def readelf(file: Path, *options: str) -> str:
-    """What readelf prints."""
-    return subprocess.run(
-        ["readelf", "--wide", *options, file], check=True, capture_output=True, text=True
-    ).stdout
-
-
-def needed_by(file: Path) -> list[str]:
-    """The libraries that it asks the loader for."""
-    return re.findall(r"\(NEEDED\).*\[(.+)\]", readelf(file, "--dynamic"))
+    return [file for file in sorted(folder.rglob("*")) if file.is_file() and is_elf(file)]
 
 
 def newest_glibc(file: Path) -> tuple[int, ...]:
     """The newest version of glibc whose symbols it asks for."""
-    versions = re.findall(r"Name: GLIBC_([0-9.]+)", readelf(file, "--version-info"))
+    versions = re.findall(
+        r"Name: GLIBC_([0-9.]+)", ask("readelf", "--version-info", "--wide", str(file))
+    )
     return max(
         (tuple(int(part) for part in version.split(".")) for version in versions), default=(0,)
     )
@@ -68,7 +55,8 @@ def pack(stage: Path, root: Path, python: str, processor: str, folder: Path) -> 
     """The wheel in `folder`, tagged by the glibc that its binaries ask for."""
     from wheel.wheelfile import WheelFile
 
-    newest = max([OLDEST_GLIBC, *map(newest_glibc, binaries_in(stage))])
+    binaries = binaries_in(stage)
+    newest = max([OLDEST_GLIBC, *map(newest_glibc, binaries)])
     python_tag = "cp" + python.replace(".", "")
     tag = f"{python_tag}-{python_tag}-manylinux_{newest[0]}_{newest[1]}_{processor}"
     files = metadata()
@@ -90,7 +78,7 @@ def pack(stage: Path, root: Path, python: str, processor: str, folder: Path) -> 
     folder.mkdir(parents=True, exist_ok=True)
     wheel = folder / f"{name}-{version}-{tag}.whl"
     with WheelFile(str(wheel), "w") as archive:
-        for file in binaries_in(stage):
+        for file in binaries:
             archive.write(str(file), str(file.relative_to(stage)))
         for path, content in files.items():
             archive.writestr(path, content)
@@ -109,7 +97,7 @@ def show(wheel: Path) -> None:
             print(
                 f"{path}: {file.stat().st_size / 1e6:.2f} MB, packed {packed[path] / 1e6:.2f} MB,"
             )
-            print(f"  glibc {newest}, loads {', '.join(needed_by(file))}")
+            print(f"  glibc {newest}, loads {', '.join(needed(file))}")
         for path in sorted(packed):
             if "/licenses/" in path:
                 print(f"licence: {path}")

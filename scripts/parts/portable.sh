@@ -9,16 +9,6 @@ headers=(libeigen3-dev libxsimd-dev nlohmann-json3-dev libcli11-dev libtomlplusp
 
 debian_name() { [[ $1 == aarch64 ]] && echo arm64 || echo amd64; }
 
-# make_wheel_tools: a virtual environment with scripts/requirements-wheel.txt.
-make_wheel_tools() {
-  if cmp -s scripts/requirements-wheel.txt build-wheel/tools/made; then return; fi
-  rm -rf build-wheel/tools
-  quietly "python -m venv" "$(choose_python)" -m venv build-wheel/tools
-  quietly "pip install" build-wheel/tools/bin/python -m pip install --quiet --disable-pip-version-check \
-    --requirement scripts/requirements-wheel.txt
-  cp scripts/requirements-wheel.txt build-wheel/tools/made
-}
-
 # make_portable_root FOLDER PROCESSOR: FOLDER/root has glibc 2.31 of Debian 11 and the headers of libraries
 # that are nothing else.
 make_portable_root() {

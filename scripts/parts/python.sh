@@ -43,6 +43,16 @@ venv_for() {
 # True where .venv is there and its stamp is $1.
 venv_is() { [[ -x .venv/bin/python && -f $stamp && $(<"$stamp") == "$1" ]]; }
 
+# make_tools FOLDER FILE: a virtual environment of its own with the requirements in FILE, made once.
+make_tools() {
+  if cmp -s "$2" "$1/made"; then return; fi
+  say "making $1 (packages of $2)"
+  rm -rf "$1"
+  quietly "python -m venv" "$(choose_python)" -m venv "$1"
+  quietly "pip install" "$1/bin/python" -m pip install --quiet --disable-pip-version-check --requirement "$2"
+  cp "$2" "$1/made"
+}
+
 # What the demo needs; a .venv that has the tests' packages too will do.
 make_small_venv() {
   local python
