@@ -69,10 +69,14 @@ void derive(Record& record, const std::string& name,
 }
 
 FlowPorts flow_ports() {
-  return {{"airspeed_scale", "1", {{.name = "s", .linear = "lambda_va"}}, largest_scale},
-          {"airspeed_bias", "m/s", {{.name = "s", .linear = "b_va"}}, largest_speed},
-          on_input("alpha_offset", "rad", largest_angle),
-          on_input("beta_offset", "rad", largest_angle)};
+  // Each by itself: where memory runs out within nested braces, g++ 12 destroys what never was.
+  FlowPorts ports;
+  ports.airspeed_scale = {
+      "airspeed_scale", "1", {{.name = "s", .linear = "lambda_va"}}, largest_scale};
+  ports.airspeed_bias = {"airspeed_bias", "m/s", {{.name = "s", .linear = "b_va"}}, largest_speed};
+  ports.alpha_offset = on_input("alpha_offset", "rad", largest_angle);
+  ports.beta_offset = on_input("beta_offset", "rad", largest_angle);
+  return ports;
 }
 
 std::vector<PortRow> flow_port_rows(const FlowPorts& ports,
