@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "manners.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 
+#include "base/unnamed_file.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::app {
 namespace {
-
-const char* temporary_folder() {
-  const char* const named = std::getenv("TMPDIR");
-  return named == nullptr || *named == '\0' ? "/tmp" : named;
-}
 
 /// read() or write() that a signal does not end.
 template <class Call>
@@ -80,12 +74,13 @@ void add_manners(CLI::App& verb) {
 void spool_standard_input() {
   struct stat state{};
   if (::fstat(STDIN_FILENO, &state) != 0 || S_ISREG(state.st_mode)) return;
-  const int spool = ::open(temporary_folder(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  const std::string folder = base::temporary_folder();
+  const int spool = base::open_scratch_file(folder);
   if (spool < 0 || !copy(STDIN_FILENO, spool) || ::dup2(spool, STDIN_FILENO) < 0) {
     throw Error(
         fmt::format("standard input can't be kept in {}: {}; set TMPDIR to a folder with "
                     "room, or name a file",
-                    temporary_folder(), std::strerror(errno)));
+                    folder, std::strerror(errno)));
   }
   ::close(spool);
 }

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/spool.hpp"
 
-#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <utility>
 
+#include "base/unnamed_file.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal::base {
@@ -20,26 +19,10 @@ constexpr std::size_t pending_rows = 4096;
 // A fault maps the pages round it too, in aligned windows of this size (Linux's fault-around).
 constexpr std::size_t window = std::size_t{1} << 16U;
 
-std::string default_folder() {
-  const char* folder = std::getenv("TMPDIR");  // NOLINT(concurrency-mt-unsafe)
-  return folder != nullptr && *folder != '\0' ? folder : "/tmp";
-}
-
-/// A file that is gone once it is closed; -1 with errno where there can be none.
-int open_nameless(const std::string& folder) {
-#ifdef O_TMPFILE
-  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);  // NOLINT
-  if (descriptor >= 0 || (errno != EOPNOTSUPP && errno != EISDIR)) return descriptor;
-#endif
-  std::string name = folder + "/sepcal-XXXXXX";
-  const int named = ::mkstemp(name.data());
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
-}
-
 }  // namespace
 
-Spool::Spool(std::string folder) : folder_(folder.empty() ? default_folder() : std::move(folder)) {}
+Spool::Spool(std::string folder)
+    : folder_(folder.empty() ? temporary_folder() : std::move(folder)) {}
 
 void Spool::fail(int error) const {
   throw Error(folder_ + ": can't hold the columns of a streamed log: " +
@@ -65,7 +48,7 @@ Spool::Mapping::~Mapping() {
   if (address != MAP_FAILED) ::munmap(address, bytes);  // NOLINT
 }
 
-Spool::Column::Column(Spool& spool) : spool_(spool), descriptor_(open_nameless(spool.folder_)) {
+Spool::Column::Column(Spool& spool) : spool_(spool), descriptor_(open_scratch_file(spool.folder_)) {
   if (descriptor_ < 0) spool.fail(errno);
   pending_.reserve(pending_rows);
 }

@@ -17,6 +17,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/unnamed_file.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -38,18 +39,6 @@ std::filesystem::path follow_links(std::filesystem::path path) {
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : ".";
-}
-
-/// How the system names an open file that has no name of its own.
-std::string path_of(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
-
-/// A file on that folder's disc that no name leads to; negative where the disc has none such, or
-/// where it could not be given a name later.
-int open_nameless(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, before_umask);
-  if (descriptor < 0 || ::access(path_of(descriptor).c_str(), F_OK) == 0) return descriptor;
-  ::close(descriptor);
-  return -1;
 }
 
 /// Throws Error where the name promises another form than text.
@@ -114,7 +103,7 @@ void OutputFile::open_beside_target() {
   if (!std::filesystem::is_directory(folder, ignored)) {
     fail(fmt::format("folder '{}' isn't there; make it first", folder.string()), 0);
   }
-  descriptor_ = open_nameless(folder);
+  descriptor_ = base::open_unnamed_file(folder, before_umask);
   if (descriptor_ >= 0) return;
   const auto create = [this](const char* hidden) {
     descriptor_ = ::open(hidden, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, before_umask);
@@ -153,10 +142,7 @@ void OutputFile::flush() {
 void OutputFile::commit() {
   flush();
   if (!direct_ && hidden_.empty()) {
-    const auto link = [this](const char* hidden) {
-      return ::linkat(AT_FDCWD, path_of(descriptor_).c_str(), AT_FDCWD, hidden,
-                      AT_SYMLINK_FOLLOW) == 0;
-    };
+    const auto link = [this](const char* hidden) { return base::name_file(descriptor_, hidden); };
     take_hidden_name(link, "can't be put in place");
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("writing failed", errno);
