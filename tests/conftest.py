@@ -57,7 +57,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         return
     chosen: dict[str, pytest.Item] = {}
     for item in items:
-        if item.path.stem not in LONG and item.get_closest_marker("long") is None:
+        marks = {mark.name for mark in item.iter_markers()}
+        if item.path.stem not in LONG and not marks & {"long", "slow"}:
             chosen.setdefault(item.nodeid.partition("[")[0], item)
     kept = set(chosen.values())
     config.hook.pytest_deselected(items=[item for item in items if item not in kept])
