@@ -132,7 +132,11 @@ def test_all_sections(page: Written) -> None:
 def test_what_is_found_is_said_first(page: Written) -> None:
     text = " ".join(page.read().text)
     top = text[: text.index(TITLES[0])]
-    assert words.VERDICTS[page.diagnosis.verdict] in top
+    history = page.chain[-1].history
+    nothing_else = history and page.diagnosis.verdict == "adequate"
+    assert (words.NOTHING_ELSE if nothing_else else words.VERDICTS[page.diagnosis.verdict]) in top
+    if history and history[0].rmse_before > history[-1].rmse_after:
+        assert f"With {' and '.join(entry.effect for entry in history)} the error fell" in top
     if page.diagnosis.found:
         name = page.diagnosis.found[0].name
         assert f"less with {name}" in top

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sepcal import _core
+from sepcal._core import HistoryEntry
 from sepcal.markup import Html, html
 from sepcal.reporting import advice, tables, words
 from sepcal.reporting.figures_cause import (
@@ -82,6 +83,9 @@ def show_verdict(material: Material) -> Html:
         warnings.append(f"The calibration was fitted on another flight, {fitted}.")
     file = material.files[-1] if material.files else ""
     command = advice.next_command(material, file)
+    tag = words.VERDICTS.get(found.verdict, found.verdict)
+    if found.verdict == "adequate" and last.history:
+        tag = words.NOTHING_ELSE
     return html(
         '<h1><b>{}</b> · {}{}</h1><div class="verdict {}"><span class="tag">{}</span><p>{}</p>'
         "</div>{}{}{}",
@@ -89,11 +93,35 @@ def show_verdict(material: Material) -> Html:
         kind,
         with_effects,
         found.verdict,
-        words.VERDICTS.get(found.verdict, found.verdict),
-        found.sentence,
+        tag,
+        html(
+            "{}{}",
+            tell_added(last.history if material.is_fitted_flight else (), unit),
+            found.sentence,
+        ),
         tables.list_facts(facts),
         html("<p>To add it:</p><pre>{}</pre>", command) if command else "",
         tables.list_warnings(warnings, material.notes),
+    )
+
+
+def tell_added(history: Sequence[HistoryEntry], unit: str) -> Html:
+    """What the added effects did to the error over all outputs; nothing where none was added."""
+    if not history:
+        return html("")
+    names = " and ".join(entry.effect for entry in history)
+    before, after = history[0].rmse_before, history[-1].rmse_after
+    if not unit:
+        change = tables.drop(before, after)
+        verb = "fell" if change >= 0 else "rose"
+        return html("With {} the error {} by {}. ", names, verb, words.percent(abs(change)))
+    verb = "fell" if after <= before else "rose"
+    return html(
+        "With {} the error {} from {} to {}. ",
+        names,
+        verb,
+        words.number(before),
+        words.with_unit(after, unit),
     )
 
 

@@ -41,6 +41,7 @@ VERDICTS = {
     "slow_change": "A slow change",
     "unexplained": "Unexplained structure",
 }
+NOTHING_ELSE = "Nothing else found"  # adequate, since an effect was added
 
 
 def number(value: float | None, digits: int = 3) -> Html:
