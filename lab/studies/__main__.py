@@ -106,7 +106,7 @@ def in_words(finding: Finding) -> str:
 
 
 def write_row(file: Path, study: Study, typed: Sequence[str], figures: str) -> None:
-    """Replaces the study's row in the file's first table, or adds it as the last there.
+    """Replaces the study's row of the same part in the file's first table, or else adds it there.
 
     Raises Error where the file can't be read or written.
     """
@@ -116,13 +116,20 @@ def write_row(file: Path, study: Study, typed: Sequence[str], figures: str) -> N
     row = f"| {' | '.join(cells)} |"
     try:
         lines = file.read_text(encoding="utf-8").splitlines()
-        at = [i for i, line in enumerate(lines) if line.startswith(f"| `{study.name}` |")]
+        own = [i for i, line in enumerate(lines) if line.startswith(f"| `{study.name}` |")]
+        same = [i for i in own if part_of(lines[i].split("`")[3]) == part_of(command)]
         rows = [i for i, line in enumerate(lines) if line.startswith("|")]
         behind = next((i + 1 for i in rows if i + 1 not in rows), 0)
-        first, last = (at[0], at[0] + 1) if at else (behind, behind)
+        first, last = (same[0], same[0] + 1) if same else (own[-1] + 1 if own else behind,) * 2
         file.write_text("\n".join([*lines[:first], row, *lines[last:]]) + "\n", encoding="utf-8")
     except OSError as error:
         raise Error(f"{file}: {error.strerror}") from error
+
+
+def part_of(command: str) -> tuple[str, ...]:
+    """What a command measures, however many seeds it takes and wherever it writes."""
+    sizes = ("--seeds", "--first-seed", "--null-seeds", "--runs", "-o", "--figures", "--json")
+    return tuple(without(sizes, shlex.split(command)))
 
 
 def without(options: Sequence[str], typed: Sequence[str]) -> Iterator[str]:

@@ -90,6 +90,24 @@ def test_the_row_of_a_study_is_replaced_and_the_rest_stays(tossed, tmp_path):
     assert command.main(["coins", "--record", str(tmp_path / "none.md")]) == 2
 
 
+def test_each_part_of_a_study_has_its_row(monkeypatch, tmp_path):
+    def options(parser):
+        seeds(2, "coins")(parser)
+        parser.add_argument("--part")
+
+    def toss(chosen, _report_progress):
+        return Outcome(f"{chosen.part} {chosen.seeds}", [])
+
+    monkeypatch.setattr(command, "STUDIES", (Study("coins", "50 % are", toss, options),))
+    page = tmp_path / "studies.md"
+    page.write_text("| study |\n|---|\n| `dice` | six |\n")
+    for part, count in (("euro", "2"), ("yen", "2"), ("euro", "3"), ("yen", "4")):
+        typed = ["coins", "--part", part, "--seeds", count, "--record", str(page)]
+        assert command.main(typed) == 0
+    rows = [line.split(" | ") for line in page.read_text().splitlines()]
+    assert [row[3] for row in rows[3:]] == ["euro 3", "yen 4"]
+
+
 def test_pooled_limits_are_the_binomials_where_every_flight_has_one_event():
     """Four standard errors of 400 at 95 %: 380 -+ 17.4."""
     assert pooled_limits([(1, 400)], 0.95) == (363, 397)
