@@ -384,17 +384,17 @@ class Parameter:
     @property
     def at_bound(self) -> bool:
         """
-        Whether a bound stopped it.
+        True if a bound stopped it.
         """
     @property
     def fixed(self) -> bool:
         """
-        Whether it was held.
+        True if the fit held it.
         """
     @property
     def lower(self) -> float:
         """
-        Its bounds; infinite where there is none.
+        Lower bound; infinite if there is none.
         """
     @property
     def name(self) -> str: ...
@@ -406,27 +406,30 @@ class Parameter:
     @property
     def standard_error(self) -> float:
         """
-        The one to believe. NaN where undefined: fixed, at a bound, singular.
+        The standard error to use. NaN where undefined: fixed, at a bound, singular.
         """
     @property
     def standard_error_blocks(self) -> float:
         """
-        By leaving out blocks of the record; NaN where too few tell.
+        Standard error from leaving out blocks of the record; NaN with too few blocks.
         """
     @property
     def standard_error_noise_model(self) -> float:
         """
-        By a noise model of each output's residual.
+        Standard error from a noise model of each output's residual.
         """
     @property
     def standard_error_white(self) -> float:
         """
-        What it would be if the residuals were white.
+        Standard error if the residuals were white.
         """
     @property
     def unit(self) -> str: ...
     @property
-    def upper(self) -> float: ...
+    def upper(self) -> float:
+        """
+        Upper bound; infinite if there is none.
+        """
     @property
     def value(self) -> float: ...
 
@@ -448,7 +451,7 @@ class NoiseSize:
     @property
     def at_floor(self) -> bool:
         """
-        Nothing but the floor stopped it.
+        True if only the floor stopped it.
         """
     @property
     def name(self) -> str:
@@ -458,14 +461,14 @@ class NoiseSize:
     @property
     def standard_error(self) -> float:
         """
-        NaN: given, or at its floor.
+        NaN if the size was given or is at its floor.
         """
     @property
     def unit(self) -> str: ...
     @property
     def value(self) -> float:
         """
-        Root of the spectral density; of an output the standard deviation.
+        Root of the spectral density; for an output, the standard deviation.
         """
 
 class Combination:
@@ -1676,7 +1679,7 @@ class Misfit:
     @property
     def is_white(self) -> bool:
         """
-        Whether lag_one is within 2 / sqrt(rows): noise alone is, nineteen times in twenty.
+        Whether lag_one is within 3 / sqrt(rows), as noise alone is 369 times in 370.
         """
     @property
     def lag_one(self) -> float:
@@ -1686,7 +1689,7 @@ class Misfit:
     @property
     def mean(self) -> float:
         """
-        Of z - model: what a constant offset would explain.
+        Mean of z - model: a constant offset of this size would remove it.
         """
     @property
     def output(self) -> str: ...
@@ -1740,27 +1743,27 @@ class ChannelMisfit:
     @property
     def share_line(self) -> float:
         """
-        Of the residual's variance that a straight line would explain.
+        Share of the residual's variance that a straight line explains.
         """
     @property
     def share_smooth(self) -> float:
         """
-        The same of a natural spline of six even knots.
+        Share that a natural spline with six even knots explains.
         """
     @property
     def slope(self) -> float:
         """
-        Of the line.
+        Slope of the line.
         """
     @property
     def slope_error(self) -> float:
         """
-        Its standard error in the residual's own noise, rather too large.
+        Standard error of the slope in the residual's own noise, rather too large.
         """
     @property
     def unit(self) -> str:
         """
-        Of the slope.
+        Unit of the slope.
         """
 
 class Window:
@@ -1786,17 +1789,17 @@ class Window:
     @property
     def last_s(self) -> float:
         """
-        And of its last.
+        Time of its last row.
         """
     @property
     def mean(self) -> dict[str, float]:
         """
-        By output, of z - model.
+        {output: mean of z - model}.
         """
     @property
     def rmse(self) -> dict[str, float]:
         """
-        By output.
+        {output: RMSE}.
         """
     @property
     def rows(self) -> int: ...
@@ -1880,17 +1883,17 @@ class OutputValidation:
     @property
     def theil_bias(self) -> float:
         """
-        Share of the mean square by the difference of the means.
+        Share of the mean square error due to different means.
         """
     @property
     def theil_covariance(self) -> float:
         """
-        The rest, by what doesn't correlate: near 1 of a good model.
+        Share left, due to what doesn't correlate: near 1 for a good model.
         """
     @property
     def theil_variance(self) -> float:
         """
-        By the difference of the standard deviations.
+        Share due to different standard deviations.
         """
 
 class ReferenceMisfit:
@@ -1938,12 +1941,12 @@ class ReferenceMisfit:
     @property
     def bias_error(self) -> float:
         """
-        Its standard error, which allows for a coloured difference.
+        Standard error of the bias; allows for a coloured difference.
         """
     @property
     def calibrated(self) -> str:
         """
-        What apply calls it: "airspeed_cal_mps".
+        Column of the calibrated quantity, as apply writes it: "airspeed_cal_mps".
         """
     @property
     def difference(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -1956,11 +1959,14 @@ class ReferenceMisfit:
         Correlation of neighbouring differences.
         """
     @property
-    def offset(self) -> float: ...
+    def offset(self) -> float:
+        """
+        The offset in the same line.
+        """
     @property
     def offset_error(self) -> float:
         """
-        As bias_error.
+        Its standard error.
         """
     @property
     def quantity(self) -> str:
@@ -1970,27 +1976,27 @@ class ReferenceMisfit:
     @property
     def reference(self) -> str:
         """
-        What the log calls the other.
+        Column of the reference in the log.
         """
     @property
     def rms(self) -> float:
         """
-        Of the difference.
+        RMS of the difference.
         """
     @property
     def rows(self) -> int:
         """
-        In which both are there.
+        Rows that have both.
         """
     @property
     def scale(self) -> float:
         """
-        Of calibrated = offset + scale * reference.
+        The scale in calibrated = offset + scale * reference.
         """
     @property
     def scale_error(self) -> float:
         """
-        As bias_error.
+        Its standard error.
         """
     @property
     def scale_reversed(self) -> float:
@@ -2000,7 +2006,7 @@ class ReferenceMisfit:
     @property
     def sd(self) -> float:
         """
-        Of the difference about its mean.
+        Standard deviation of the difference.
         """
     @property
     def time(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -2010,7 +2016,7 @@ class ReferenceMisfit:
     @property
     def unit(self) -> str:
         """
-        Of all numbers but the scales.
+        Unit of every number except the scales.
         """
 
 class Comparison:
@@ -2192,12 +2198,12 @@ class EffectFinding:
     @property
     def absorbed_by(self) -> dict[str, float]:
         """
-        How far ignoring it shifts each parameter.
+        Shift of each parameter if the effect is ignored.
         """
     @property
     def beside(self) -> str:
         """
-        The first found: "equivalent", "fades", "counts"; "untried" of others.
+        Next to the first found: "equivalent", "fades", "counts"; "untried" for the others.
         """
     @property
     def beside_in_words(self) -> str:
@@ -2207,7 +2213,7 @@ class EffectFinding:
     @property
     def drivers(self) -> list[str]:
         """
-        Channels.
+        Channels that drive it.
         """
     @property
     def estimate(self) -> dict[str, float]:
@@ -2217,37 +2223,37 @@ class EffectFinding:
     @property
     def excuse(self) -> float:
         """
-        How many times too far noise would have to wander to look like it.
+        How many times the sensors' usual drift it would take to look like this effect.
         """
     @property
     def held_out_after(self) -> float:
         """
-        The same with it.
+        RMSE of the rows held out, with it.
         """
     @property
     def held_out_before(self) -> float:
         """
-        RMSE of rows left out.
+        RMSE of the rows held out, without it.
         """
     @property
     def held_out_gain(self) -> float:
         """
-        The same on rows left out.
+        The same drop on rows held out.
         """
     @property
     def held_out_interleaved(self) -> bool:
         """
-        Blocks in between, not whole segments, were left out.
+        True if interleaved blocks were held out, not whole segments.
         """
     @property
     def held_out_passed(self) -> bool:
         """
-        The mean gain of a block exceeds its standard error.
+        True if the mean gain of a block exceeds its standard error.
         """
     @property
     def held_out_refitted(self) -> bool:
         """
-        By real fits with it and without, not by one step.
+        True if the gain comes from fits with it and without it, not from one step.
         """
     @property
     def in_words(self) -> str:
@@ -2257,47 +2263,47 @@ class EffectFinding:
     @property
     def is_fitted(self) -> bool:
         """
-        The estimates are those of a fit with it.
+        True if the estimates come from a fit with it.
         """
     @property
     def log10_p(self) -> float:
         """
-        Of the same, which may be too small for a float.
+        log10 of p_value, which may be too small for a float.
         """
     @property
     def name(self) -> str:
         """
-        What add() takes.
+        Name to give to add().
         """
     @property
     def outputs(self) -> list[str]:
         """
-        That it can reach: all where they share parameters.
+        Outputs that it can reach; all if they share parameters.
         """
     @property
     def p_adjusted(self) -> float:
         """
-        After Holm: for the verdict.
+        p after Holm's correction; decides the verdict.
         """
     @property
     def p_listed(self) -> float:
         """
-        After Benjamini & Hochberg: for the list.
+        p after Benjamini and Hochberg's correction; orders the list.
         """
     @property
     def p_value(self) -> float:
         """
-        For itself, corrected for its scan.
+        p of this effect alone, corrected for its scan.
         """
     @property
     def partial_f(self) -> float:
         """
-        As stepwise regression has it, residuals taken for white; sums of squares over `outputs`, each in units of its RMSE in the fit.
+        Partial F of stepwise regression, which takes residuals for white; sums of squares over `outputs`, each in units of its RMSE in the fit.
         """
     @property
     def predicted_drop(self) -> float:
         """
-        Of the RMSE over these outputs, 1 - after / before.
+        Predicted drop of the RMSE over these outputs, 1 - after / before.
         """
     @property
     def pse(self) -> float:
@@ -2307,17 +2313,17 @@ class EffectFinding:
     @property
     def pse_without(self) -> float:
         """
-        The same without it.
+        Predicted square error without it.
         """
     @property
     def r_squared(self) -> float:
         """
-        Of what is measured about its mean, with it.
+        Coefficient of determination with it.
         """
     @property
     def r_squared_without(self) -> float:
         """
-        The same without it.
+        Coefficient of determination without it.
         """
     @property
     def sentence(self) -> str:
@@ -2327,22 +2333,22 @@ class EffectFinding:
     @property
     def shapes(self) -> dict[str, float]:
         """
-        Of a scan: {"bias_step.t0": 41.2}.
+        Shapes found by a scan: {"bias_step.t0": 41.2}.
         """
     @property
     def share_after_selection(self) -> float:
         """
-        Of the estimates, allowing for the effect's choice.
+        Share of the estimates left after allowing for the choice of this effect.
         """
     @property
     def sse(self) -> float:
         """
-        Without it.
+        Sum of squared errors without it.
         """
     @property
     def sse_reduction(self) -> float:
         """
-        By orthogonal functions: what it takes of sse.
+        Reduction of sse by its orthogonal function.
         """
     @property
     def standard_error(self) -> dict[str, float]:
@@ -2362,7 +2368,7 @@ class EffectFinding:
     @property
     def visibility(self) -> float:
         """
-        Below 0.05 the flight can't show at least a part of it.
+        Sine of the angle to the model's own columns; below 0.05 the flight can't show at least a part of it.
         """
 
 class Advice:
@@ -2420,7 +2426,7 @@ class ResidualNoise:
     @property
     def floor(self) -> float:
         """
-        What no model of the past predicts better.
+        RMSE that noise alone would leave: no model of the past predicts better.
         """
     @property
     def lag_one(self) -> float:
@@ -2430,12 +2436,12 @@ class ResidualNoise:
     @property
     def ljung_box_p(self) -> float:
         """
-        Of 20 lags: small where the residual is not white.
+        p of the Ljung-Box test over 20 lags; small if the residual is not white.
         """
     @property
     def noise(self) -> NoiseModel:
         """
-        Its NoiseModel.
+        NoiseModel of the residual.
         """
     @property
     def output(self) -> str: ...
@@ -2507,17 +2513,17 @@ class UnmeasuredCause:
     @property
     def all_along(self) -> bool:
         """
-        Strongest over the whole flight.
+        True if it is strongest over the whole flight.
         """
     @property
     def first_s(self) -> float:
         """
-        Of the rows where it is strongest [s].
+        Time of the first row where it is strongest [s].
         """
     @property
     def frequency_hz(self) -> float:
         """
-        NaN where none stands out.
+        NaN if no frequency stands out.
         """
     @property
     def kind(self) -> str:
@@ -2525,21 +2531,24 @@ class UnmeasuredCause:
         "common_cause" or "spectral_line".
         """
     @property
-    def last_s(self) -> float: ...
+    def last_s(self) -> float:
+        """
+        Time of the last such row [s].
+        """
     @property
     def outputs(self) -> list[str]:
         """
-        That show it.
+        Outputs that show it.
         """
     @property
     def p_adjusted(self) -> float:
         """
-        After Holm: for the verdict.
+        p after Holm's correction; decides the verdict.
         """
     @property
     def p_value(self) -> float:
         """
-        For itself.
+        p of this cause alone.
         """
     @property
     def sentence(self) -> str:
@@ -2567,7 +2576,7 @@ class DetectionLimit:
     @property
     def size(self) -> float:
         """
-        Change over the whole flight.
+        Smallest change over the flight that would have shown.
         """
     @property
     def unit(self) -> str: ...
@@ -2590,12 +2599,12 @@ class ErrorBound:
     @property
     def name(self) -> str:
         """
-        As `error_budget` of diagnose() takes it.
+        Name in `error_budget` of diagnose().
         """
     @property
     def size(self) -> float:
         """
-        Standard deviation of each component, at most.
+        Largest standard deviation of each component.
         """
     @property
     def unit(self) -> str: ...
@@ -2625,32 +2634,32 @@ class DiagnosisWork:
     @property
     def calibrated(self) -> int:
         """
-        By draws of the noise.
+        Candidates whose p was calibrated by draws of the noise.
         """
     @property
     def drawn(self) -> int:
         """
-        These draws, of each noise.
+        Draws of each noise.
         """
     @property
     def refitted(self) -> int:
         """
-        Models with a candidate that were fitted.
+        Fits of a model with a candidate.
         """
     @property
     def screened(self) -> int:
         """
-        Candidates.
+        Candidates that were screened.
         """
     @property
     def tested(self) -> int:
         """
-        By likelihood ratios, their noise estimated anew.
+        Candidates tested by likelihood ratios, each with noise estimated again.
         """
     @property
     def tried_on_some_rows(self) -> int:
         """
-        The same to 400 rows, where a fit is far off.
+        Of these, fits to 400 rows first, where the full fit is far off.
         """
 
 class Injection:
@@ -2726,12 +2735,12 @@ class StepwiseStep:
     @property
     def as_good(self) -> list[str]:
         """
-        What would have done as well in its place.
+        Effects that would have done as well in its place.
         """
     @property
     def dropped(self) -> list[str]:
         """
-        What was added before and counts no more beside it.
+        Effects added before that no longer count beside it.
         """
     @property
     def effect(self) -> str: ...
@@ -2740,12 +2749,12 @@ class StepwiseStep:
     @property
     def held_out_gain(self) -> float:
         """
-        Promised, on rows left out.
+        Gain that was promised on rows held out.
         """
     @property
     def outputs(self) -> list[str]:
         """
-        That it can reach.
+        Outputs that it can reach.
         """
     @property
     def p_adjusted(self) -> float: ...
@@ -2754,7 +2763,7 @@ class StepwiseStep:
     @property
     def predicted_drop(self) -> float:
         """
-        Promised, of the RMSE: 1 - after / before.
+        Drop of the RMSE that was promised, 1 - after / before.
         """
     @property
     def pse(self) -> float: ...
@@ -3332,22 +3341,22 @@ class Derived:
     @property
     def standard_error(self) -> float:
         """
-        NaN where that of a parameter it depends on is.
+        NaN if a parameter that it depends on has none.
         """
     @property
     def standard_error_blocks(self) -> float:
         """
-        By leaving out blocks of the record; NaN where too few tell.
+        Standard error from leaving out blocks of the record; NaN with too few blocks.
         """
     @property
     def standard_error_noise_model(self) -> float:
         """
-        By a noise model of each output's residual.
+        Standard error from a noise model of each output's residual.
         """
     @property
     def standard_error_white(self) -> float:
         """
-        What it would be if the residuals were white.
+        Standard error if the residuals were white.
         """
     @property
     def unit(self) -> str: ...
@@ -3388,7 +3397,7 @@ class HistoryEntry:
     @property
     def predicted_drop(self) -> float:
         """
-        Of the RMSE, 1 - after / before.
+        Predicted drop of the RMSE, 1 - after / before.
         """
     @property
     def rmse_after(self) -> float: ...
@@ -3651,7 +3660,7 @@ class LogNote:
     @property
     def advice(self) -> str:
         """
-        What to do.
+        How to mend it.
         """
     @property
     def columns(self) -> list[str]: ...
@@ -3663,17 +3672,17 @@ class LogNote:
     @property
     def effect(self) -> str:
         """
-        What it does to the result.
+        How it changes the result.
         """
     @property
     def first_s(self) -> float:
         """
-        Time of the first of these rows; NaN: of all.
+        Time of the first of these rows; NaN if all rows are concerned.
         """
     @property
     def found(self) -> str:
         """
-        What it is.
+        What was found.
         """
     @property
     def kind(self) -> str:
@@ -3683,12 +3692,12 @@ class LogNote:
     @property
     def last_s(self) -> float:
         """
-        And of the last.
+        Time of the last.
         """
     @property
     def rows(self) -> int:
         """
-        Concerned.
+        Number of rows concerned.
         """
 
 class FlightCheck:

@@ -81,6 +81,7 @@ def test_the_numbers_are_the_apps(model: str, fits: Fits, folder: Path) -> None:
     assert sepcal.load(folder / "app.json").status == found.status
 
 
+@pytest.mark.slow
 def test_every_filter_on_every_model_with_a_state(
     fits: Fits, flights: list[sepcal.Flight], folder: Path
 ) -> None:

@@ -156,7 +156,7 @@ def test_errors_are_those_of_differences(fitted: sepcal.AircraftFit) -> None:
     )
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_errors_are_the_scatter_of_fits(fitted: sepcal.AircraftFit) -> None:
     """100 flights: a scatter is known to 7 %, all 19 together to less.
 

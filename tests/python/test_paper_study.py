@@ -19,6 +19,7 @@ from studies.paper.parts import Options, Table
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.slow
 def test_the_second_example_tells_the_methods_apart() -> None:
     example = scalar_examples.EXAMPLES[1]
     result = scalar_examples.run_example(example, Options(40, 0, 2), lambda _: None)

@@ -17,6 +17,7 @@ def need_compilers() -> None:
         pytest.skip(f"{' and '.join(missing)} are not on this machine")
 
 
+@pytest.mark.slow
 def test_two_dozen_random_exports(tmp_path: Path) -> None:
     need_compilers()
     found = random_exports.run(24, 20, tmp_path)

@@ -35,6 +35,8 @@ RESTATED = re.compile(r"(?:\n(?:wind|airspeed_ratio|correction): .*)+\n", re.MUL
 
 
 # How well outputs are followed, and estimates that go together: nothing was said of them.
+# Three standard errors, once two: those recorded are beyond either or within both.
+NOISE_LIMIT = re.compile(r"noise alone within [\d.]+")
 FOLLOWED = re.compile(r"\noutput +R\^2.*\n(?:\S.*\n)*?Theil U: .*\n")
 TOGETHER = re.compile(r"\ncorrelation above 0\.9: .*\n")
 
@@ -111,7 +113,7 @@ def test_every_verb_gives_what_it_gave(name: str, folder: Path) -> None:
     now = ask(CASES[name], run_in(folder), folder)
     for verb in ("compare", "apply"):
         texts = in_one_line(FOLLOWED.sub("", now["texts"][verb])), recorded["texts"][verb]
-        assert texts[0] == texts[1]
+        assert NOISE_LIMIT.sub("", texts[0]) == NOISE_LIMIT.sub("", texts[1])
     added = recorded["texts"]["add"]
     for old, new in NEW_WORDS.items():
         added = added.replace(old, new)

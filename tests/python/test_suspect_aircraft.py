@@ -209,7 +209,10 @@ def test_a_clean_log_has_no_note(tmp_path: Path, model: str, seed: int) -> None:
     assert notes_of(fitted) == []
 
 
-@pytest.mark.parametrize(("model", "fault", "column"), PLANTED)
+SOME = [pytest.param(*one, marks=[pytest.mark.slow] * (k % 3 > 0)) for k, one in enumerate(PLANTED)]
+
+
+@pytest.mark.parametrize(("model", "fault", "column"), SOME)
 def test_a_fault_changes_no_verdict(tmp_path: Path, model: str, fault: str, column: str) -> None:
     """Fit tells the column; what is hidden is found, and add keeps what was promised of it."""
     columns = FLY[model]()
@@ -246,7 +249,12 @@ def test_the_way_out_of_a_note_leads_out(tmp_path: Path, fault: str, model: str)
     assert notes_of(followed) == []
 
 
-@pytest.mark.parametrize("column", ["alpha_rad", "az_mps2", "q_radps", "airspeed_mps"])
+OTHERS = [
+    pytest.param(one, marks=pytest.mark.slow) for one in ("az_mps2", "q_radps", "airspeed_mps")
+]
+
+
+@pytest.mark.parametrize("column", ["alpha_rad", *OTHERS])
 def test_a_column_that_never_changes_is_named(tmp_path: Path, column: str) -> None:
     for model in ("aero",) if column == "alpha_rad" else FIT:  # a path without it hardly ends
         columns = FLY[model]()

@@ -210,7 +210,10 @@ def halved(seed: int = 5, rows: int = 1600, at: int = 800) -> dict[str, np.ndarr
     return {"time": time, "aileron": aileron, "p_m": p + 0.03 + 0.01 * draw.standard_normal(rows)}
 
 
-@pytest.mark.parametrize("method", ["ekf", "iekf", "srif"])
+SLOW = [pytest.param(method, marks=pytest.mark.slow) for method in ("iekf", "srif")]
+
+
+@pytest.mark.parametrize("method", ["ekf", *SLOW])
 def test_a_jump_is_found_and_followed(method: str) -> None:
     model = sepcal.Trajectory(RollMode(), inputs="hold")
     given = {"start_rows": 200, "noise": {"p_m": 0.01}, "process_noise": {"p": 0.01}}
@@ -252,6 +255,7 @@ def test_a_sensor_that_jumps_is_found(method: str) -> None:
     assert abs(found["k"][-1] - 2.05) < 3 * found.standard_deviation("k")[-1]
 
 
+@pytest.mark.slow
 def test_methods_that_look_for_no_change() -> None:
     model = sepcal.Trajectory(RollMode(), inputs="hold")
     for method in ("rls", "rml"):

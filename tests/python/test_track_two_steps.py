@@ -81,6 +81,7 @@ def _cubic(values: np.ndarray, rows: int) -> np.ndarray:
     return out
 
 
+@pytest.mark.slow
 def test_a_mini_batch_begins_both_steps() -> None:
     flight, steps = flown(5)
     long = sepcal.simulate(AIRCRAFT, rows=6000, seed=7)

@@ -264,6 +264,7 @@ def test_a_curve_that_holds_the_line_does_not_speak_against_it() -> None:
     assert diagnosis.advice.effect in ("gyro_bias[time]", "gyro_bias[imu_temp_degc]")
 
 
+@pytest.mark.slow
 def test_filter_error_promises_what_it_keeps() -> None:
     """Its noises are found anew beside the effect: one step in the old ones can't foretell them."""
     flown = kinematic_flight.fly(6, duration=30.0, rate=25.0, late=0.08)

@@ -19,9 +19,10 @@ void define_comparison(py::module_& module) {
       .finish()
       .def_property_readonly("verdict", &verdict_on_noise,
                              "In words whether the residuals are noise.")
-      .def_property_readonly("is_white", &is_white,
-                             "Whether lag_one is within 2 / sqrt(rows): noise alone is, nineteen "
-                             "times in twenty.");
+      .def_property_readonly(
+          "is_white", &is_white,
+          "Whether lag_one is within 3 / sqrt(rows), as noise alone is 369 times "
+          "in 370.");
 
   BoundStruct<ChannelMisfit>(module, "ChannelMisfit",
                              "One output's residual against one channel of the flight.")

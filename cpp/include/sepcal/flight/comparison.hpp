@@ -147,8 +147,9 @@ std::string to_json(const Comparison& comparison);
 /// explain most of it, the worst windows.
 std::string to_text(const Comparison& comparison, Detail detail = Detail::brief);
 
-/// Whether lag_one is within 2 / sqrt(rows), two standard errors of white noise's about zero: one
-/// verdict in twenty on noise alone is wrong. False where it is NaN.
+/// Whether lag_one is within 3 / sqrt(rows), three standard errors of white noise's about zero: of
+/// noise alone one verdict in 370 is wrong, and noise whose neighbours correlate by 5 / sqrt(rows)
+/// is told from it 98 times in a hundred. False where it is NaN.
 bool is_white(const Misfit& misfit);
 
 /// In words whether the residuals are noise: "white, as noise alone would be".

@@ -39,7 +39,8 @@ struct ResultFields<Misfit> {
     row("unit", &Misfit::unit, "", Told::in_code);
     row("rows", &Misfit::rows, "");
     row("rmse", &Misfit::rmse, "");
-    row("mean", &Misfit::mean, "Of z - model: what a constant offset would explain.");
+    row("mean", &Misfit::mean,
+        "Mean of z - model: a constant offset of this size would remove it.");
     row("lag_one", &Misfit::lag_one,
         "Correlation of neighbouring residuals, never across a segment's edge.");
   }
@@ -53,13 +54,13 @@ struct ResultFields<ChannelMisfit> {
         R"("altitude_m"; "time", "alpha", "roll" for what the probe knows by itself.)");
     row("output", &ChannelMisfit::output, "");
     row("share_line", &ChannelMisfit::share_line,
-        "Of the residual's variance that a straight line would explain.");
+        "Share of the residual's variance that a straight line explains.");
     row("share_smooth", &ChannelMisfit::share_smooth,
-        "The same of a natural spline of six even knots.");
-    row("slope", &ChannelMisfit::slope, "Of the line.");
+        "Share that a natural spline with six even knots explains.");
+    row("slope", &ChannelMisfit::slope, "Slope of the line.");
     row("slope_error", &ChannelMisfit::slope_error,
-        "Its standard error in the residual's own noise, rather too large.");
-    row("unit", &ChannelMisfit::unit, "Of the slope.");
+        "Standard error of the slope in the residual's own noise, rather too large.");
+    row("unit", &ChannelMisfit::unit, "Unit of the slope.");
   }
 };
 
@@ -68,10 +69,10 @@ struct ResultFields<Window> {
   template <class Row>
   static void each(const Row& row) {
     row("first_s", &Window::first_s, "Time of its first row.");
-    row("last_s", &Window::last_s, "And of its last.");
+    row("last_s", &Window::last_s, "Time of its last row.");
     row("rows", &Window::rows, "");
-    row("rmse", &Window::rmse, "By output.");
-    row("mean", &Window::mean, "By output, of z - model.");
+    row("rmse", &Window::rmse, "{output: RMSE}.");
+    row("mean", &Window::mean, "{output: mean of z - model}.");
   }
 };
 
@@ -86,11 +87,11 @@ struct ResultFields<OutputValidation> {
         "Theil's inequality coefficient, rms(z - model) / (rms(z) + rms(model)): 0 exact, 1 "
         "worst.");
     row("theil_bias", &OutputValidation::theil_bias,
-        "Share of the mean square by the difference of the means.");
+        "Share of the mean square error due to different means.");
     row("theil_variance", &OutputValidation::theil_variance,
-        "By the difference of the standard deviations.");
+        "Share due to different standard deviations.");
     row("theil_covariance", &OutputValidation::theil_covariance,
-        "The rest, by what doesn't correlate: near 1 of a good model.");
+        "Share left, due to what doesn't correlate: near 1 for a good model.");
   }
 };
 
@@ -100,20 +101,21 @@ struct ResultFields<ReferenceMisfit> {
   static void each(const Row& row) {
     row("quantity", &ReferenceMisfit::quantity,
         R"("airspeed", "alpha", "mx"; "field": the calibrated field's strength.)");
-    row("unit", &ReferenceMisfit::unit, "Of all numbers but the scales.");
-    row("calibrated", &ReferenceMisfit::calibrated, R"(What apply calls it: "airspeed_cal_mps".)");
-    row("reference", &ReferenceMisfit::reference, "What the log calls the other.");
-    row("rows", &ReferenceMisfit::rows, "In which both are there.");
+    row("unit", &ReferenceMisfit::unit, "Unit of every number except the scales.");
+    row("calibrated", &ReferenceMisfit::calibrated,
+        R"(Column of the calibrated quantity, as apply writes it: "airspeed_cal_mps".)");
+    row("reference", &ReferenceMisfit::reference, "Column of the reference in the log.");
+    row("rows", &ReferenceMisfit::rows, "Rows that have both.");
     row("bias", &ReferenceMisfit::bias, "Mean of calibrated - reference.");
     row("bias_error", &ReferenceMisfit::bias_error,
-        "Its standard error, which allows for a coloured difference.");
-    row("rms", &ReferenceMisfit::rms, "Of the difference.");
-    row("sd", &ReferenceMisfit::sd, "Of the difference about its mean.");
+        "Standard error of the bias; allows for a coloured difference.");
+    row("rms", &ReferenceMisfit::rms, "RMS of the difference.");
+    row("sd", &ReferenceMisfit::sd, "Standard deviation of the difference.");
     row("lag_one", &ReferenceMisfit::lag_one, "Correlation of neighbouring differences.");
-    row("scale", &ReferenceMisfit::scale, "Of calibrated = offset + scale * reference.");
-    row("scale_error", &ReferenceMisfit::scale_error, "As bias_error.");
-    row("offset", &ReferenceMisfit::offset, "");
-    row("offset_error", &ReferenceMisfit::offset_error, "As bias_error.");
+    row("scale", &ReferenceMisfit::scale, "The scale in calibrated = offset + scale * reference.");
+    row("scale_error", &ReferenceMisfit::scale_error, "Its standard error.");
+    row("offset", &ReferenceMisfit::offset, "The offset in the same line.");
+    row("offset_error", &ReferenceMisfit::offset_error, "Its standard error.");
     row("scale_reversed", &ReferenceMisfit::scale_reversed,
         "One over the scale of the reference on the calibrated; noise of either makes them "
         "differ.");
@@ -127,19 +129,21 @@ struct ResultFields<Parameter> {
     row("name", &Parameter::name, "", Told::in_code);
     row("value", &Parameter::value, "", Told::everywhere, Null::refused);
     row("standard_error", &Parameter::standard_error,
-        "The one to believe. NaN where undefined: fixed, at a bound, singular.");
+        "The standard error to use. NaN where undefined: fixed, at a bound, singular.");
     row("standard_error_white", &Parameter::standard_error_white,
-        "What it would be if the residuals were white.");
+        "Standard error if the residuals were white.");
     row("standard_error_noise_model", &Parameter::standard_error_noise_model,
-        "By a noise model of each output's residual.", Told::lately);
+        "Standard error from a noise model of each output's residual.", Told::lately);
     row("standard_error_blocks", &Parameter::standard_error_blocks,
-        "By leaving out blocks of the record; NaN where too few tell.", Told::lately);
+        "Standard error from leaving out blocks of the record; NaN with too few blocks.",
+        Told::lately);
     row("unit", &Parameter::unit, "");
-    row("lower", &Parameter::lower, "Its bounds; infinite where there is none.", Told::everywhere,
+    row("lower", &Parameter::lower, "Lower bound; infinite if there is none.", Told::everywhere,
         Null::no_lower_end);
-    row("upper", &Parameter::upper, "", Told::everywhere, Null::no_upper_end);
-    row("at_bound", &Parameter::at_bound, "Whether a bound stopped it.");
-    row("fixed", &Parameter::fixed, "Whether it was held.", Told::in_code);
+    row("upper", &Parameter::upper, "Upper bound; infinite if there is none.", Told::everywhere,
+        Null::no_upper_end);
+    row("at_bound", &Parameter::at_bound, "True if a bound stopped it.");
+    row("fixed", &Parameter::fixed, "True if the fit held it.", Told::in_code);
   }
 };
 
@@ -150,11 +154,12 @@ struct ResultFields<NoiseSize> {
     row("name", &NoiseSize::name, R"("q_alpha" of a process noise, "r_alpha_m" of an output.)",
         Told::in_code);
     row("value", &NoiseSize::value,
-        "Root of the spectral density; of an output the standard deviation.", Told::everywhere,
+        "Root of the spectral density; for an output, the standard deviation.", Told::everywhere,
         Null::refused);
     row("unit", &NoiseSize::unit, "");
-    row("standard_error", &NoiseSize::standard_error, "NaN: given, or at its floor.");
-    row("at_floor", &NoiseSize::at_floor, "Nothing but the floor stopped it.");
+    row("standard_error", &NoiseSize::standard_error,
+        "NaN if the size was given or is at its floor.");
+    row("at_floor", &NoiseSize::at_floor, "True if only the floor stopped it.");
   }
 };
 
@@ -165,13 +170,14 @@ struct ResultFields<Derived> {
     row("name", &Derived::name, "", Told::in_code);
     row("value", &Derived::value, "");
     row("standard_error", &Derived::standard_error,
-        "NaN where that of a parameter it depends on is.");
+        "NaN if a parameter that it depends on has none.");
     row("standard_error_white", &Derived::standard_error_white,
-        "What it would be if the residuals were white.");
+        "Standard error if the residuals were white.");
     row("standard_error_noise_model", &Derived::standard_error_noise_model,
-        "By a noise model of each output's residual.", Told::lately);
+        "Standard error from a noise model of each output's residual.", Told::lately);
     row("standard_error_blocks", &Derived::standard_error_blocks,
-        "By leaving out blocks of the record; NaN where too few tell.", Told::lately);
+        "Standard error from leaving out blocks of the record; NaN with too few blocks.",
+        Told::lately);
     row("unit", &Derived::unit, "");
   }
 };
@@ -185,7 +191,8 @@ struct ResultFields<HistoryEntry> {
     row("rmse_after", &HistoryEntry::rmse_after, "");
     row("held_out_before", &HistoryEntry::held_out_before, "");
     row("held_out_after", &HistoryEntry::held_out_after, "");
-    row("predicted_drop", &HistoryEntry::predicted_drop, "Of the RMSE, 1 - after / before.");
+    row("predicted_drop", &HistoryEntry::predicted_drop,
+        "Predicted drop of the RMSE, 1 - after / before.");
   }
 };
 
@@ -198,12 +205,13 @@ struct ResultFields<LogNote> {
         R"("wrong": a result is, or there is none; "matters": estimates or their errors suffer; )"
         R"("slight": good to know.)");
     row("columns", &LogNote::columns, "");
-    row("rows", &LogNote::rows, "Concerned.");
-    row("first_s", &LogNote::first_s, "Time of the first of these rows; NaN: of all.");
-    row("last_s", &LogNote::last_s, "And of the last.");
-    row("found", &LogNote::found, "What it is.");
-    row("effect", &LogNote::effect, "What it does to the result.");
-    row("advice", &LogNote::advice, "What to do.");
+    row("rows", &LogNote::rows, "Number of rows concerned.");
+    row("first_s", &LogNote::first_s,
+        "Time of the first of these rows; NaN if all rows are concerned.");
+    row("last_s", &LogNote::last_s, "Time of the last.");
+    row("found", &LogNote::found, "What was found.");
+    row("effect", &LogNote::effect, "How it changes the result.");
+    row("advice", &LogNote::advice, "How to mend it.");
   }
 };
 
@@ -213,57 +221,61 @@ struct ResultFields<EffectFinding> {
   template <class Row>
   static void each(const Row& row) {
     using Finding = EffectFinding;
-    row("name", &Finding::name, "What add() takes.");
-    row("drivers", &Finding::drivers, "Channels.");
-    row("shapes", &Finding::shapes, R"(Of a scan: {"bias_step.t0": 41.2}.)");
-    row("p_value", &Finding::p_value, "For itself, corrected for its scan.");
-    row("log10_p", &Finding::log10_p, "Of the same, which may be too small for a float.");
-    row("p_adjusted", &Finding::p_adjusted, "After Holm: for the verdict.");
-    row("p_listed", &Finding::p_listed, "After Benjamini & Hochberg: for the list.");
+    row("name", &Finding::name, "Name to give to add().");
+    row("drivers", &Finding::drivers, "Channels that drive it.");
+    row("shapes", &Finding::shapes, R"(Shapes found by a scan: {"bias_step.t0": 41.2}.)");
+    row("p_value", &Finding::p_value, "p of this effect alone, corrected for its scan.");
+    row("log10_p", &Finding::log10_p, "log10 of p_value, which may be too small for a float.");
+    row("p_adjusted", &Finding::p_adjusted, "p after Holm's correction; decides the verdict.");
+    row("p_listed", &Finding::p_listed,
+        "p after Benjamini and Hochberg's correction; orders the list.");
     row("share_after_selection", &Finding::share_after_selection,
-        "Of the estimates, allowing for the effect's choice.");
-    row("outputs", &Finding::outputs, "That it can reach: all where they share parameters.");
+        "Share of the estimates left after allowing for the choice of this effect.");
+    row("outputs", &Finding::outputs, "Outputs that it can reach; all if they share parameters.");
     row(
         "partial_f", [](auto& self) -> auto& { return self.structure.partial_f; },
-        "As stepwise regression has it, residuals taken for white; sums of squares over `outputs`, "
-        "each in units of its RMSE in the fit.");
-    row("sse", [](auto& self) -> auto& { return self.structure.sse; }, "Without it.");
+        "Partial F of stepwise regression, which takes residuals for white; sums of squares over "
+        "`outputs`, each in units of its RMSE in the fit.");
+    row(
+        "sse", [](auto& self) -> auto& { return self.structure.sse; },
+        "Sum of squared errors without it.");
     row(
         "sse_reduction", [](auto& self) -> auto& { return self.structure.sse_reduction; },
-        "By orthogonal functions: what it takes of sse.");
+        "Reduction of sse by its orthogonal function.");
     row(
         "pse", [](auto& self) -> auto& { return self.structure.pse; },
         "Predicted square error, SSE/N + 2 s2max p/N.");
     row(
         "pse_without", [](auto& self) -> auto& { return self.structure.pse_without; },
-        "The same without it.");
+        "Predicted square error without it.");
     row(
         "r_squared", [](auto& self) -> auto& { return self.structure.r_squared; },
-        "Of what is measured about its mean, with it.");
+        "Coefficient of determination with it.");
     row(
         "r_squared_without", [](auto& self) -> auto& { return self.structure.r_squared_without; },
-        "The same without it.");
+        "Coefficient of determination without it.");
     row("predicted_drop", &Finding::predicted_drop,
-        "Of the RMSE over these outputs, 1 - after / before.");
-    row("held_out_gain", &Finding::held_out_gain, "The same on rows left out.");
-    row("held_out_before", &Finding::held_out_before, "RMSE of rows left out.");
-    row("held_out_after", &Finding::held_out_after, "The same with it.");
+        "Predicted drop of the RMSE over these outputs, 1 - after / before.");
+    row("held_out_gain", &Finding::held_out_gain, "The same drop on rows held out.");
+    row("held_out_before", &Finding::held_out_before, "RMSE of the rows held out, without it.");
+    row("held_out_after", &Finding::held_out_after, "RMSE of the rows held out, with it.");
     row("held_out_passed", &Finding::held_out_passed,
-        "The mean gain of a block exceeds its standard error.");
+        "True if the mean gain of a block exceeds its standard error.");
     row("held_out_interleaved", &Finding::held_out_interleaved,
-        "Blocks in between, not whole segments, were left out.");
+        "True if interleaved blocks were held out, not whole segments.");
     row("held_out_refitted", &Finding::held_out_refitted,
-        "By real fits with it and without, not by one step.");
-    row("is_fitted", &Finding::is_fitted, "The estimates are those of a fit with it.");
+        "True if the gain comes from fits with it and without it, not from one step.");
+    row("is_fitted", &Finding::is_fitted, "True if the estimates come from a fit with it.");
     row("excuse", &Finding::excuse,
-        "How many times too far noise would have to wander to look like it.");
+        "How many times the sensors' usual drift it would take to look like this effect.");
     row("visibility", &Finding::visibility,
-        "Below 0.05 the flight can't show at least a part of it.");
-    row("absorbed_by", &Finding::absorbed_by, "How far ignoring it shifts each parameter.");
+        "Sine of the angle to the model's own columns; below 0.05 the flight can't show at least a "
+        "part of it.");
+    row("absorbed_by", &Finding::absorbed_by, "Shift of each parameter if the effect is ignored.");
     row("status", &Finding::status,
         R"("found", "slow_change", "undecided", "not_seen", "cannot_be_seen".)");
     row("beside", &Finding::beside,
-        R"(The first found: "equivalent", "fades", "counts"; "untried" of others.)");
+        R"(Next to the first found: "equivalent", "fades", "counts"; "untried" for the others.)");
   }
 };
 
@@ -273,13 +285,14 @@ struct ResultFields<UnmeasuredCause> {
   static void each(const Row& row) {
     row("kind", &UnmeasuredCause::kind, R"("common_cause" or "spectral_line".)");
     row("sentence", [](auto& self) { return describe(self); }, "In plain words.");
-    row("outputs", &UnmeasuredCause::outputs, "That show it.");
-    row("p_value", &UnmeasuredCause::p_value, "For itself.");
-    row("p_adjusted", &UnmeasuredCause::p_adjusted, "After Holm: for the verdict.");
-    row("all_along", &UnmeasuredCause::all_along, "Strongest over the whole flight.");
-    row("first_s", &UnmeasuredCause::first_s, "Of the rows where it is strongest [s].");
-    row("last_s", &UnmeasuredCause::last_s, "");
-    row("frequency_hz", &UnmeasuredCause::frequency, "NaN where none stands out.");
+    row("outputs", &UnmeasuredCause::outputs, "Outputs that show it.");
+    row("p_value", &UnmeasuredCause::p_value, "p of this cause alone.");
+    row("p_adjusted", &UnmeasuredCause::p_adjusted,
+        "p after Holm's correction; decides the verdict.");
+    row("all_along", &UnmeasuredCause::all_along, "True if it is strongest over the whole flight.");
+    row("first_s", &UnmeasuredCause::first_s, "Time of the first row where it is strongest [s].");
+    row("last_s", &UnmeasuredCause::last_s, "Time of the last such row [s].");
+    row("frequency_hz", &UnmeasuredCause::frequency, "NaN if no frequency stands out.");
   }
 };
 
@@ -292,9 +305,10 @@ struct ResultFields<ResidualNoise> {
     row("rmse", &ResidualNoise::rmse, "");
     row("lag_one", &ResidualNoise::lag_one, "Correlation of neighbouring rows.");
     row("ljung_box_p", &ResidualNoise::ljung_box_p,
-        "Of 20 lags: small where the residual is not white.");
-    row("noise", &ResidualNoise::noise, "Its NoiseModel.");
-    row("floor", &ResidualNoise::floor, "What no model of the past predicts better.");
+        "p of the Ljung-Box test over 20 lags; small if the residual is not white.");
+    row("noise", &ResidualNoise::noise, "NoiseModel of the residual.");
+    row("floor", &ResidualNoise::floor,
+        "RMSE that noise alone would leave: no model of the past predicts better.");
   }
 };
 
@@ -303,7 +317,7 @@ struct ResultFields<DetectionLimit> {
   template <class Row>
   static void each(const Row& row) {
     row("port", &DetectionLimit::port, "", Told::in_code);
-    row("size", &DetectionLimit::size, "Change over the whole flight.");
+    row("size", &DetectionLimit::size, "Smallest change over the flight that would have shown.");
     row("unit", &DetectionLimit::unit, "");
   }
 };
@@ -312,8 +326,8 @@ template <>
 struct ResultFields<ErrorBound> {
   template <class Row>
   static void each(const Row& row) {
-    row("name", &ErrorBound::name, "As `error_budget` of diagnose() takes it.", Told::in_code);
-    row("size", &ErrorBound::size, "Standard deviation of each component, at most.");
+    row("name", &ErrorBound::name, "Name in `error_budget` of diagnose().", Told::in_code);
+    row("size", &ErrorBound::size, "Largest standard deviation of each component.");
     row("unit", &ErrorBound::unit, "");
   }
 };
@@ -322,13 +336,15 @@ template <>
 struct ResultFields<DiagnosisWork> {
   template <class Row>
   static void each(const Row& row) {
-    row("screened", &DiagnosisWork::screened, "Candidates.");
-    row("tested", &DiagnosisWork::tested, "By likelihood ratios, their noise estimated anew.");
-    row("calibrated", &DiagnosisWork::calibrated, "By draws of the noise.");
-    row("drawn", &DiagnosisWork::drawn, "These draws, of each noise.");
-    row("refitted", &DiagnosisWork::refitted, "Models with a candidate that were fitted.");
+    row("screened", &DiagnosisWork::screened, "Candidates that were screened.");
+    row("tested", &DiagnosisWork::tested,
+        "Candidates tested by likelihood ratios, each with noise estimated again.");
+    row("calibrated", &DiagnosisWork::calibrated,
+        "Candidates whose p was calibrated by draws of the noise.");
+    row("drawn", &DiagnosisWork::drawn, "Draws of each noise.");
+    row("refitted", &DiagnosisWork::refitted, "Fits of a model with a candidate.");
     row("tried_on_some_rows", &DiagnosisWork::tried_on_some_rows,
-        "The same to 400 rows, where a fit is far off.");
+        "Of these, fits to 400 rows first, where the full fit is far off.");
   }
 };
 
@@ -337,7 +353,9 @@ struct ResultFields<StepwiseStep> {
   template <class Row>
   static void each(const Row& row) {
     row("effect", [](auto& self) -> auto& { return self.promised.name; }, "");
-    row("outputs", [](auto& self) -> auto& { return self.promised.outputs; }, "That it can reach.");
+    row(
+        "outputs", [](auto& self) -> auto& { return self.promised.outputs; },
+        "Outputs that it can reach.");
     row("p_adjusted", [](auto& self) -> auto& { return self.promised.p_adjusted; }, "");
     row("partial_f", [](auto& self) -> auto& { return self.promised.structure.partial_f; }, "");
     row("pse", [](auto& self) -> auto& { return self.promised.structure.pse; }, "");
@@ -345,15 +363,15 @@ struct ResultFields<StepwiseStep> {
     row("r_squared", [](auto& self) -> auto& { return self.promised.structure.r_squared; }, "");
     row(
         "held_out_gain", [](auto& self) -> auto& { return self.promised.held_out_gain; },
-        "Promised, on rows left out.");
+        "Gain that was promised on rows held out.");
     row(
         "predicted_drop", [](auto& self) -> auto& { return self.promised.predicted_drop; },
-        "Promised, of the RMSE: 1 - after / before.");
+        "Drop of the RMSE that was promised, 1 - after / before.");
     row("found_drop", [](auto& self) { return self.found_drop(); }, "");
     row("rmse_before", &StepwiseStep::rmse_before, "");
     row("rmse_after", &StepwiseStep::rmse_after, "");
-    row("as_good", &StepwiseStep::as_good, "What would have done as well in its place.");
-    row("dropped", &StepwiseStep::dropped, "What was added before and counts no more beside it.");
+    row("as_good", &StepwiseStep::as_good, "Effects that would have done as well in its place.");
+    row("dropped", &StepwiseStep::dropped, "Effects added before that no longer count beside it.");
   }
 };
 

@@ -23,7 +23,7 @@ double shown_mean(const Misfit& misfit) {
 }
 
 double white_limit(const Misfit& misfit) {
-  return 2.0 / std::sqrt(static_cast<double>(misfit.rows));
+  return 3.0 / std::sqrt(static_cast<double>(misfit.rows));
 }
 
 }  // namespace
