@@ -34,9 +34,9 @@ OUTPUTS = re.compile(r"^output +rmse.*(?:\n\S.*)+", re.MULTILINE)
 RESTATED = re.compile(r"(?:\n(?:wind|airspeed_ratio|correction): .*)+\n", re.MULTILINE)
 
 
-# How well outputs are followed, and estimates that go together: nothing was said of them.
 # Three standard errors, once two: those recorded are beyond either or within both.
 NOISE_LIMIT = re.compile(r"noise alone within [\d.]+")
+# How well outputs are followed, and estimates that go together: nothing was said of them.
 FOLLOWED = re.compile(r"\noutput +R\^2.*\n(?:\S.*\n)*?Theil U: .*\n")
 TOGETHER = re.compile(r"\ncorrelation above 0\.9: .*\n")
 

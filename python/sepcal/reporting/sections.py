@@ -111,18 +111,12 @@ def tell_added(history: Sequence[HistoryEntry], unit: str) -> Html:
         return html("")
     names = " and ".join(entry.effect for entry in history)
     before, after = history[0].rmse_before, history[-1].rmse_after
-    if not unit:
-        change = tables.drop(before, after)
-        verb = "fell" if change >= 0 else "rose"
-        return html("With {} the error {} by {}. ", names, verb, words.percent(abs(change)))
-    verb = "fell" if after <= before else "rose"
-    return html(
-        "With {} the error {} from {} to {}. ",
-        names,
-        verb,
-        words.number(before),
-        words.with_unit(after, unit),
-    )
+    verb = "rose" if after > before else "fell"
+    if unit:
+        change = html("from {} to {}", words.number(before), words.with_unit(after, unit))
+    else:
+        change = html("by {}", words.percent(abs(tables.drop(before, after))))
+    return html("With {} the error {} {}. ", names, verb, change)
 
 
 def show_waterfall(material: Material) -> Section:
