@@ -60,7 +60,7 @@ build() {
   fi
 }
 
-# build_dev WHICH: everything, with all C++ tests or the short or the long ones.
+# build_dev WHICH: everything, with all C++ tests, the short or the long ones, or none.
 build_dev() {
   configure_with_python dev build -DSEPCAL_TESTS="$1"
   build build

@@ -157,6 +157,7 @@ def test_smoothed_states_are_columns_of_apply(model: str, fits: Fits) -> None:
         assert any(name.startswith(f"w_{noise}_") for name in columns)
 
 
+@pytest.mark.slow
 def test_intervals_of_a_path_hold(aircraft: sepcal.Aircraft) -> None:
     """Integrated noise of the inertial unit adds up along segments, less along pieces of 2 s.
 
@@ -179,6 +180,7 @@ def test_intervals_of_a_path_hold(aircraft: sepcal.Aircraft) -> None:
     assert squares(None, process_noise={"ax": 1e-12}) > 60.0
 
 
+@pytest.mark.slow
 def test_smoothed_states_of_a_path_are_as_sure_as_they_say(aircraft: sepcal.Aircraft) -> None:
     """Against the flight itself, six seeds: what the path leaves open widens the bands."""
     sensors = ("ax", "ay", "az", "p", "q", "r")

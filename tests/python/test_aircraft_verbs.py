@@ -12,6 +12,7 @@ from scipy import stats
 
 import apps
 import sepcal
+from cases import but_first_slow
 from refusals import refuse
 
 EQUATION = {"Cm": ["1", "alpha", "q_hat", "elevator"]}
@@ -70,7 +71,7 @@ def test_equation_error_of_two_flights_is_their_least_squares(
     assert_allclose([one.value for one in joint.parameters.values()], expected, rtol=1e-9)
 
 
-@pytest.mark.parametrize("axes", ["longitudinal", "lateral"])
+@pytest.mark.parametrize("axes", but_first_slow(["longitudinal", "lateral"]))
 def test_output_error_of_two_flights_lies_between(
     aircraft: sepcal.Aircraft, flights: list[sepcal.Flight], axes: str
 ) -> None:
@@ -217,7 +218,7 @@ def test_what_is_put_into_coefficients_is_found(
     assert base.diagnose(only=["Cm[alpha^2]"]).verdict == "adequate"  # the fit is as it was
 
 
-@pytest.mark.parametrize("effect", ["Cm[alpha^2]", "gyro_bias[imu_temp_degc]"])
+@pytest.mark.parametrize("effect", but_first_slow(["Cm[alpha^2]", "gyro_bias[imu_temp_degc]"]))
 def test_what_is_put_along_a_trajectory_is_found(
     aircraft: sepcal.Aircraft, flights: list[sepcal.Flight], effect: str
 ) -> None:

@@ -30,7 +30,8 @@ def fit_delay(late: float, noise: float, seed: int) -> tuple[float, float]:
     return tau.value - late, tau.standard_error
 
 
-@pytest.mark.parametrize("noise", [0.02, pytest.param(0.1, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("noise", [0.02, 0.1])
 def test_a_delay_of_whole_rows(noise: float):
     """Squared errors over squared standard errors, 36 of each noise; 1 in 1,000 by chance."""
     errors = np.array([fit_delay(late, noise, s) for late in (0.0, 0.1, 0.25) for s in SEEDS])

@@ -21,6 +21,7 @@ SCANNED = (
 )  # half of it
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("probe", effect_coverage.PROBES)
 def test_intervals_of_added_effects_cover(probe):
     covers = [

@@ -218,6 +218,7 @@ def test_filter_error_expects_the_air_too(fitted: sepcal.AircraftFit) -> None:
         assert rough[name].standard_error > 1.5 * still[name].standard_error, name
 
 
+@pytest.mark.slow
 def test_it_begins_at_another_flight(fitted: sepcal.AircraftFit, tmp_path: Path) -> None:
     fitted.save(tmp_path / "fit.json")
     loaded = sepcal.load(tmp_path / "fit.json")
@@ -231,6 +232,7 @@ def test_it_begins_at_another_flight(fitted: sepcal.AircraftFit, tmp_path: Path)
         assert other[name].standard_error == pytest.approx(error, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_table_of_inputs_is_in_its_own_units(fitted: sepcal.AircraftFit) -> None:
     degrees = {"time_s": DESIGN.time, "elevator_deg": np.rad2deg(DESIGN.signals["elevator_rad"])}
     told = fitted.expect(degrees)

@@ -60,6 +60,7 @@ def test_the_likelihood_is_a_kalman_filters(fit: sepcal.Fit) -> None:
     assert fit.log_likelihood == pytest.approx(total, abs=2e-3)
 
 
+@pytest.mark.slow
 def test_a_model_of_ones_own_is_the_same(fit: sepcal.Fit) -> None:
     """Its derivatives are differences of differences."""
     short = {name: values[:250] for name, values in LOG.items()}
@@ -359,6 +360,7 @@ def test_trials_draw_process_noise() -> None:
     assert np.abs(ratio.mean(axis=1) - 1).max() < 0.02
 
 
+@pytest.mark.slow
 def test_a_study_by_filter_error_holds_what_it_says() -> None:
     trial = sepcal.DesignTrial(
         sepcal.ShortPeriod(), DESIGN, FLOWN, READS, stirred=STIRRED,

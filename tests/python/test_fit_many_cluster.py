@@ -8,6 +8,7 @@ import pytest
 from distributed import Client, LocalCluster
 
 import sepcal
+from cases import but_first_slow
 from fleet_flights import PROBE, WIND, Interrupted, check_same, write_fleet
 
 
@@ -42,7 +43,7 @@ def test_200_flights_on_a_cluster_are_those_here_to_the_last_bit(client, fleet):
     check_same(sepcal.fit_many(PROBE, files, own=WIND, executor=client.get_executor()), expected)
 
 
-@pytest.mark.parametrize("task", [20, 150])
+@pytest.mark.parametrize("task", but_first_slow([20, 150]))
 def test_a_worker_may_be_killed_on_the_way(client, fleet, task):
     files, expected = fleet
     executor = Interrupted(client.get_executor(), task, lambda: kill_a_worker(client))

@@ -40,6 +40,7 @@ def small(monkeypatch):
     return StudyOptions(seeds=1, null_seeds=2, sigmas=(10.0,), processes=2)
 
 
+@pytest.mark.slow
 def test_a_small_study_runs_and_is_written_up(small, tmp_path):
     told = []
     rows = hidden_effects(small, told.append)

@@ -311,6 +311,7 @@ def test_a_model_of_no_parameters_has_its_initial_state() -> None:
     assert found["x"][-1] == pytest.approx(data["x_m"][-1], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_steps_too_long_for_the_dynamics_are_said() -> None:
     """Of a held input RK4 with steps of 0.05 s can't tell -54.4 1/s from -2: both give 0.9048."""
     time = 0.05 * np.arange(200)

@@ -109,6 +109,7 @@ def better(base: sepcal.Calibration) -> sepcal.Calibration:
     return base.add("zero[temp_degc]")
 
 
+@pytest.mark.slow
 @pytest.mark.long
 def test_the_hidden_effect_is_found(base: sepcal.Calibration, better: sepcal.Calibration) -> None:
     """Named, and the error falls as promised."""
@@ -132,6 +133,7 @@ def test_the_estimates_come_right(better: sepcal.Calibration) -> None:
         assert abs(estimate.value - true) < 4.0 * estimate.standard_error, name
 
 
+@pytest.mark.slow
 @pytest.mark.long
 def test_nothing_is_called_missing_where_nothing_is() -> None:
     """The same pendulum with an encoder that does not warm."""

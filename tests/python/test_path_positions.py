@@ -146,6 +146,7 @@ def fitted(log: dict[str, Array]) -> sepcal.AircraftFit:
     return sepcal.fit(path, sepcal.Flight(log), fix=HELD, noise=NOISE)
 
 
+@pytest.mark.slow
 def test_estimates_and_errors_are_those_of_scipy(
     log: dict[str, Array], fitted: sepcal.AircraftFit
 ) -> None:

@@ -88,6 +88,7 @@ def test_an_overflow_is_found(batch: list[Header], tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_draws_are_of_every_probe_and_shape() -> None:
     """So that two dozen are no two dozen of the same."""
     drawn = [random_exports.make_case(1, seed) for seed in range(100)]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import sepcal
+from cases import but_first_slow
 from recorded import find_fixture
 
 FOOT = 0.3048  # m
@@ -122,7 +123,7 @@ ASKED = (*LAGS, "airdata_late", "alpha_late", "gyro_bias[time]", "wind[time]", "
 
 
 @pytest.mark.parametrize("inputs", ["linear", "hold"])
-@pytest.mark.parametrize("start", ["free", "fixed"])
+@pytest.mark.parametrize("start", but_first_slow(["free", "fixed"]))
 @pytest.mark.parametrize("method", ["output-error", "filter-error"])
 def test_a_lag_is_named_from_every_start(
     flight: sepcal.Flight, method: str, start: str, inputs: str

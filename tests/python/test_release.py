@@ -207,6 +207,7 @@ def check_sums(dist: Path) -> set[str]:
     return names
 
 
+@pytest.mark.slow
 def test_a_release_is_whole_and_tagged(checkout: Checkout) -> None:
     checkout.write_script("test", "exit 0")
     checkout.commit()

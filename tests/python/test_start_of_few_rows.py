@@ -30,6 +30,7 @@ def tracks() -> list[sepcal.Track]:
     ]
 
 
+@pytest.mark.slow
 def test_the_noise_is_found(tracks: list[sepcal.Track]) -> None:
     alone = []
     for seed in FLIGHTS:

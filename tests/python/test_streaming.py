@@ -41,6 +41,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_log(logs: Path):
     mag = APPS / "sepcal-mag"
     peaks = [

@@ -14,6 +14,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import sepcal
+from cases import but_first_slow
 from oracle import kinematic_flight
 
 LIGHT = sepcal.Aircraft(
@@ -45,6 +46,7 @@ def corrected(path: sepcal.AircraftFit) -> sepcal.AircraftFit:
     return path.add("gyro_bias[imu_temp_degc]")
 
 
+@pytest.mark.slow
 def test_a_drifting_gyro_is_named(path: sepcal.AircraftFit) -> None:
     diagnosis = path.diagnose()
     assert diagnosis.verdict == "effect_missing"
@@ -53,6 +55,7 @@ def test_a_drifting_gyro_is_named(path: sepcal.AircraftFit) -> None:
     assert diagnosis.effects[0].sentence == "the gyros' bias changes with imu_temp_degc"
 
 
+@pytest.mark.slow
 def test_a_wind_comes_before_a_bias_that_takes_half_of_what_it_takes() -> None:
     """Both take little of the error: what one coefficient leaves is then about as little."""
     size = 10.0
@@ -133,7 +136,7 @@ def test_a_spline_of_a_coefficient_that_the_model_has_not() -> None:
         fit.add("Cm[spline(p_hat,5)]")
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", but_first_slow(range(3)))
 def test_nothing_is_named_where_nothing_is_hidden(seed: int) -> None:
     verdict = sepcal.fit(sepcal.FlightPath(), fly({}, seed=100 + seed)).diagnose().verdict
     assert verdict == "adequate"
@@ -153,14 +156,16 @@ def test_a_late_unit_has_its_time() -> None:
 
 @pytest.mark.parametrize(
     ("model", "hidden", "effect"),
-    [
-        ("path", "airdata_late", "airdata_late"),
-        ("path", "attitude_late", "attitude_late"),
-        ("path", "velocity_late", "velocity_late"),
-        ("path", "alpha_lag", "alpha_late"),
-        ("longitudinal", "attitude_late", "attitude_late"),
-        ("longitudinal", "alpha_lag", "alpha_late"),
-    ],
+    but_first_slow(
+        [
+            ("path", "airdata_late", "airdata_late"),
+            ("path", "attitude_late", "attitude_late"),
+            ("path", "velocity_late", "velocity_late"),
+            ("path", "alpha_lag", "alpha_late"),
+            ("longitudinal", "attitude_late", "attitude_late"),
+            ("longitudinal", "alpha_lag", "alpha_late"),
+        ]
+    ),
 )
 def test_a_group_of_sensors_that_is_late_is_named(model: str, hidden: str, effect: str) -> None:
     late = 0.06  # s
@@ -241,6 +246,7 @@ def test_an_own_model_takes_effects_on_its_inputs(method: str) -> None:
     assert fit.rmse["p_m"] == pytest.approx(0.01, rel=0.15)
 
 
+@pytest.mark.slow
 def test_what_a_path_has_bent_to_is_found_from_its_own_fit() -> None:
     """lambda_beta takes the drift for its own, and from there one step sees nothing of it."""
     flown = kinematic_flight.fly(3, gyro_drift=[8e-5, -16e-5, 12e-5])
@@ -257,6 +263,7 @@ def test_what_a_path_has_bent_to_is_found_from_its_own_fit() -> None:
         assert abs(slope.value + drift) < 4 * slope.standard_error
 
 
+@pytest.mark.slow
 def test_a_curve_that_holds_the_line_does_not_speak_against_it() -> None:
     flown = kinematic_flight.fly(1, rate=20.0, gyro_drift=[4e-5, -8e-5, 6e-5])
     diagnosis = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown)).diagnose()
@@ -315,6 +322,7 @@ def test_a_bend_is_seen_close_about_the_trim() -> None:
     assert asked.visibility > 0.01
 
 
+@pytest.mark.slow
 def test_each_step_of_a_course_falls_as_its_history_says() -> None:
     flown = kinematic_flight.fly(6, duration=30.0, rate=25.0, late=0.08)
     fit = sepcal.fit(sepcal.FlightPath(), sepcal.Flight(flown))

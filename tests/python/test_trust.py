@@ -420,6 +420,7 @@ def test_a_zero_in_levels_is_told_from_curves_that_go_with_it():
     assert diagnosis.advice.effect == diagnosis.effects[0].name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("probe", "one", "other", "noise", "seed"),
     [

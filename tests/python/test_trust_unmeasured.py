@@ -44,6 +44,7 @@ def test_noise_is_no_cause(noise: str, probe: str):
     assert calibrate(probe, flight).diagnose().unmeasured == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("probe", ["five-hole", "magnetometer"])
 def test_noise_of_what_enters_the_model_is_no_cause(probe: str):
     """Of a probe's pressures, of attitudes: it comes into several outputs by the heading."""

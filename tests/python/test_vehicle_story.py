@@ -193,6 +193,7 @@ def check_that_nothing_is_determined(result: dict[str, Any]) -> None:
     assert named >= {f"{what}_{axis}" for what in ("lambda", "n", "eta") for axis in "xyz"}
 
 
+@pytest.mark.slow
 def test_what_is_said_of_it_hangs_on_no_last_digit(tmp_path: Path) -> None:
     """Rounding, of the readings or of sums, decides in which of several minima the fit ends.
 
