@@ -60,3 +60,29 @@ try_wheel() {
   ((status == 0)) || die "the wheel failed in $1; its root is $root"
   rm -rf "$root"
 }
+
+# try_packages FOLDER: its packages of sepcal, installed in a bare Debian 12 with what its archive has.
+try_packages() {
+  local root
+  make_bare_root bookworm
+  root=$(mktemp -d "${TMPDIR:-/tmp}/bare.XXXX")
+  tar --extract --file build-wheel/bare/bookworm.tar --directory "$root"
+  cp "$1"/sepcal_*.deb "$1"/libsepcal-dev_*.deb "$root"
+  cp /etc/resolv.conf "$root/etc"
+  cp /etc/apt/apt.conf.d/*proxy* "$root/etc/apt/apt.conf.d" 2>/dev/null || true
+  mkdir -p "$root/var/lib/apt/lists/partial" "$root/var/cache/apt/archives/partial"
+  say "installing $(basename "$1"/sepcal_*.deb) in a bare bookworm"
+  mount -t proc proc "$root/proc"
+  local status=0
+  chroot "$root" env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 sh -ec '
+    apt-get -qq update
+    apt-get -qq install --no-install-recommends --yes ./sepcal_*.deb ./libsepcal-dev_*.deb >/dev/null
+    sepcal-pitot simulate -o flight.csv --rate 10 --seed 1
+    sepcal-pitot fit flight.csv --k-alpha 4.5 --k-beta 4.5 --lever-arm 0.35,0,-0.02 -o tube.json >fit.txt
+    grep -q converged fit.txt
+    test -f /usr/include/sepcal/sepcal.hpp
+    sepcal --version' || status=$?
+  umount "$root/proc"
+  ((status == 0)) || die "the packages failed in a bare bookworm; its root is $root"
+  rm -rf "$root"
+}
