@@ -93,6 +93,7 @@ void define_figures(py::module_& module);
 void define_flight(py::module_& module);
 void define_intervals(py::module_& module);
 void define_many(py::module_& module);
+void define_fleet(py::module_& module);
 void define_noise(py::module_& module);
 void define_programs(py::module_& module);
 void define_simulation(py::module_& module);

@@ -80,6 +80,7 @@ PYBIND11_MODULE(_core, module) {
   define_export(module);
   define_figures(module);
   define_many(module);
+  define_fleet(module);
   define_trials(module);
   define_simulation(module);
   define_programs(module);

@@ -485,20 +485,22 @@ std::vector<Effect> CandidateRoom::with_those_of_fit(const std::vector<Effect>& 
   return all;
 }
 
-const Candidate& CandidateRoom::make(const std::string& name) {
+const Candidate& CandidateRoom::make(const EffectSetting& setting) {
+  const std::string& name = setting.name;
   const auto known = made_.find(name);
   if (known != made_.end()) return known->second;
-  Candidate candidate = make_anew(name);
+  Candidate candidate = make_anew(setting);
   const std::string resolved = candidate.name;
   const auto made = made_.emplace(resolved, std::move(candidate)).first;
   return resolved == name ? made->second : made_.emplace(name, made->second).first->second;
 }
 
-Candidate CandidateRoom::make_anew(const std::string& name) {
+Candidate CandidateRoom::make_anew(const EffectSetting& given) {
+  const std::string& name = given.name;
   Candidate candidate{.name = name};
   const std::vector<std::string> parts = split_effects(name);
   if (parts.size() == 1) {
-    candidate.settings = {{.name = parts.front()}};
+    candidate.settings = {given};
     candidate.effects = make_effects(fitted_.kit, *fitted_.model, candidate.settings, record_);
   } else {
     for (const std::string& part : parts) {

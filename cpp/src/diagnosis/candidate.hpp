@@ -116,8 +116,10 @@ class CandidateRoom {
     return follows_path() ? std::min(asked, visible_along_path) : asked;
   }
 
-  /// Throws Error where the record can't make it.
-  const Candidate& make(const std::string& name);
+  /// Throws Error where the record can't make it. A setting is of one effect, and may have a
+  /// centre.
+  const Candidate& make(const std::string& name) { return make(EffectSetting{.name = name}); }
+  const Candidate& make(const EffectSetting& setting);
 
   /// Throws Error where the record doesn't log what the port needs. Once, before drive().
   void open(const Port& port);
@@ -156,7 +158,7 @@ class CandidateRoom {
 
   ResidualSlopes slopes_by(const BlockModel& model, const std::vector<std::string>& inputs,
                            const Record& at) const;
-  Candidate make_anew(const std::string& name);
+  Candidate make_anew(const EffectSetting& given);
   CandidateColumns effect_columns(const Candidate& candidate, std::size_t place,
                                   std::span<const Variable> coefficients, double shape) const;
   CandidateColumns keep(const std::string& key,

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The flights of each vehicle, about one point.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "sepcal/detail/triangular_factor.hpp"
+#include "sepcal/fleet.hpp"
+
+namespace sepcal::fleet {
+
+struct Vehicle {
+  std::string name;
+  std::vector<std::size_t> flights = {};  // places among the fleet's
+};
+
+/// In the order in which they come. Throws Error for no flight, for two of one name, and for a
+/// flight whose parameters are not those of the first.
+std::vector<Vehicle> group_vehicles(const std::vector<FleetFlight>& flights);
+
+/// The rows [parameters | columns | residual] of a flight, the residual as it would be at
+/// `reference`.
+Eigen::MatrixXd rows_about(const FlightFactor& factor, const Eigen::VectorXd& reference);
+
+/// [parameters | residual] of a flight, at `reference`.
+TriangularFactor parameter_rows(const FlightFactor& factor, const Eigen::VectorXd& reference);
+
+TriangularFactor sum(const TriangularFactor& a, const TriangularFactor& b);
+
+/// [parameters | residual] of all the vehicle's flights, at `reference`.
+TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
+                                  const Eigen::VectorXd& reference);
+
+/// Of a vehicle, by leaving out each of its flights: (n - 1)/n sum of squares about their mean; NaN
+/// for fewer than three flights, and where what is left does not tell.
+Eigen::MatrixXd jackknife(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
+                          const Eigen::VectorXd& reference);
+
+}  // namespace sepcal::fleet
