@@ -68,6 +68,7 @@ from sepcal.exporting import Exported, export
 from sepcal.filters import Filter, SmoothedPass
 from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
+from sepcal.fleet import Fleet, FleetComparison, FleetDiagnosis, Monitoring, Population
 from sepcal.flight import Flight, read, read_csv, stream_csv
 from sepcal.frequency_responses import FrequencyResponse, frequency_response
 from sepcal.geomagnetism import EarthField, earth_field
@@ -162,6 +163,9 @@ __all__ = [
     "Fit",
     "FitOptions",
     "FiveHoleProbe",
+    "Fleet",
+    "FleetComparison",
+    "FleetDiagnosis",
     "Flight",
     "FlightCheck",
     "FlightFit",
@@ -181,6 +185,7 @@ __all__ = [
     "ManyFit",
     "Misfit",
     "Model",
+    "Monitoring",
     "MonteCarlo",
     "NoiseFit",
     "NoiseModel",
@@ -190,6 +195,7 @@ __all__ = [
     "ParameterInterval",
     "ParameterStudy",
     "PitotStatic",
+    "Population",
     "Prediction",
     "RecursiveLeastSquares",
     "ReferenceMisfit",

@@ -18,6 +18,7 @@ from typing import NoReturn
 from sepcal import _core
 from sepcal import own_commands as own
 from sepcal.command_tables import table_of
+from sepcal.fleet import command as fleet
 from sepcal.geomagnetism import command as field
 from sepcal.logs import command as log
 from sepcal.printing import in_line, tell
@@ -25,9 +26,9 @@ from sepcal.reading import AIR, MAGNETIC, reading_for
 from sepcal.reporting import command as report
 from sepcal.validation import command as validation
 
-COMMANDS = (own, report, log, field, validation)
+COMMANDS = (own, report, fleet, log, field, validation)
 SUBJECTS = {"mag": MAGNETIC, "pitot": AIR}  # what a file with several sensors is read for
-NAMES = ("model", "report", "log", "field", "validate")
+NAMES = ("model", "report", "fleet", "log", "field", "validate")
 BAD_INPUT = 2
 INTERRUPTED = 130
 

@@ -37,9 +37,12 @@ __all__: list[str] = [
     "Exported",
     "FirstStep",
     "Fit",
+    "FleetDiagnosis",
+    "FleetFinding",
     "Flight",
     "FlightCheck",
     "FlightDeparture",
+    "FlightFactor",
     "FlightFigures",
     "FlightFit",
     "FlightTrackOptions",
@@ -64,6 +67,7 @@ __all__: list[str] = [
     "Parameter",
     "ParameterChange",
     "ParameterInterval",
+    "Population",
     "Prediction",
     "PreparedFlight",
     "PythonFunctions",
@@ -81,6 +85,8 @@ __all__: list[str] = [
     "Unexplained",
     "UnmeasuredCause",
     "VISIBLE_FROM",
+    "VehicleFit",
+    "VehicleSeries",
     "Window",
     "accelerometer",
     "angles_of_quaternion",
@@ -90,6 +96,7 @@ __all__: list[str] = [
     "bound_cost",
     "calibrate",
     "calibrate_jointly",
+    "calibrate_like",
     "certify",
     "channels",
     "check",
@@ -98,28 +105,35 @@ __all__: list[str] = [
     "concatenation",
     "confidence_ellipse",
     "cost_landscape",
+    "diagnose_fleet",
     "effects",
     "effects_of",
     "example_in_five_states",
     "example_in_three_states",
     "export_to_file",
+    "find_spread",
     "fit",
     "fit_alonso_shuster",
     "fit_haupt_kasdin",
     "fit_many",
     "fit_noise",
+    "fit_population",
     "fit_single_stage",
     "fit_trials",
+    "fit_vehicles",
     "five_hole_probe",
+    "follow_vehicles",
     "foreign_reader",
     "gather_figures",
     "hear_progress",
     "in_line",
     "in_shell",
     "join_rates",
+    "list_fleet_candidates",
     "magnetometer",
     "magnetometer_in_nine_states",
     "option_rows",
+    "p_of_distance",
     "parse_calibration",
     "parse_sized_effect",
     "pitot_static",
@@ -133,6 +147,7 @@ __all__: list[str] = [
     "read_calibration",
     "read_csv",
     "read_foreign_files",
+    "reduce",
     "run_sepcal",
     "scalar_example_1",
     "scalar_example_2",
@@ -4247,6 +4262,402 @@ class PreparedFlight:
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     ]: ...
 
+class FlightFactor:
+    """
+    A flight at a point, in units of its own noise, its own parameters projected out.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "parameters",
+        "units",
+        "values",
+        "columns",
+        "triangle",
+        "readings",
+        "own",
+        "centres",
+        "rmse",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def centres(self) -> dict[str, float]:
+        """
+        By effect, of what its driver goes about.
+        """
+    @property
+    def columns(self) -> list[tuple[str, str, str, bool]]:
+        """
+        (effect, coefficient, unit, whether it stands in for another cause) of each, c.
+        """
+    @property
+    def own(self) -> dict[str, float]:
+        """
+        Estimates of the flight's own parameters.
+        """
+    @property
+    def parameters(self) -> list[str]:
+        """
+        p names.
+        """
+    @property
+    def readings(self) -> float:
+        """
+        Behind it, less the flight's own parameters.
+        """
+    @property
+    def rmse(self) -> float:
+        """
+        Over all outputs, at the point.
+        """
+    @property
+    def triangle(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        [parameters | columns | residual], upper, (p + c + 1) square.
+        """
+    @property
+    def units(self) -> list[str]: ...
+    @property
+    def values(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Where it was linearised (p).
+        """
+
+class VehicleFit:
+    """
+    A vehicle's parameters from all its flights.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "vehicle",
+        "flights",
+        "values",
+        "covariance",
+        "jackknife",
+        "misfit",
+        "readings",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        As the noise models have it.
+        """
+    @property
+    def flights(self) -> int:
+        """
+        How many.
+        """
+    @property
+    def jackknife(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        By leaving out a flight each; NaN for fewer than three.
+        """
+    @property
+    def misfit(self) -> float:
+        """
+        -2 ln L at the estimates.
+        """
+    @property
+    def readings(self) -> float: ...
+    @property
+    def values(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        NaN where its flights do not tell.
+        """
+    @property
+    def vehicle(self) -> str: ...
+
+class Population:
+    """
+    How parameters spread over vehicles.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "parameters",
+        "mean",
+        "mean_covariance",
+        "spread",
+        "inflation",
+        "log_likelihood",
+        "vehicles",
+        "shrunken",
+        "shrunken_errors",
+        "converged",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def inflation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        By what variances exceed those of the noise models (p).
+        """
+    @property
+    def log_likelihood(self) -> float:
+        """
+        Restricted, up to a constant.
+        """
+    @property
+    def mean(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def mean_covariance(
+        self,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def parameters(self) -> list[str]:
+        """
+        p names.
+        """
+    @property
+    def shrunken(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Predictions (p x vehicles).
+        """
+    @property
+    def shrunken_errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Their standard errors.
+        """
+    @property
+    def spread(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Covariance between vehicles (p x p).
+        """
+    @property
+    def vehicles(self) -> list[str]: ...
+
+class VehicleSeries:
+    """
+    A vehicle's parameters from flight to flight.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "vehicle",
+        "flights",
+        "values",
+        "errors",
+        "inflation",
+        "change",
+        "log10_p",
+        "p_adjusted",
+        "parameter",
+        "before",
+        "after",
+        "standard_error",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def after(self) -> float: ...
+    @property
+    def before(self) -> float: ...
+    @property
+    def change(self) -> int:
+        """
+        So many flights are before the likeliest change.
+        """
+    @property
+    def errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Their standard errors (p x n).
+        """
+    @property
+    def flights(self) -> list[str]:
+        """
+        n names, in their order.
+        """
+    @property
+    def inflation(self) -> float:
+        """
+        By what flights scatter, in errors of the noise models.
+        """
+    @property
+    def log10_p(self) -> float:
+        """
+        Of no change, for the places tried.
+        """
+    @property
+    def p_adjusted(self) -> float:
+        """
+        For the number of vehicles too.
+        """
+    @property
+    def parameter(self) -> str:
+        """
+        That changes by most of its errors.
+        """
+    @property
+    def standard_error(self) -> float:
+        """
+        Of the difference.
+        """
+    @property
+    def values(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Of each flight alone (p x n).
+        """
+    @property
+    def vehicle(self) -> str: ...
+
+class FleetFinding:
+    """
+    What a fleet says of a candidate.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "cause",
+        "effect",
+        "vehicle",
+        "coefficients",
+        "spread",
+        "log10_p",
+        "p_adjusted",
+        "drop",
+        "found",
+        "as_good",
+        "stands_in",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def as_good(self) -> list[str]:
+        """
+        Effects that explain as much in its place.
+        """
+    @property
+    def cause(self) -> str:
+        """
+        "everywhere", "grows", "one-vehicle" or "differs".
+        """
+    @property
+    def coefficients(self) -> dict[str, tuple[float, float, str]]:
+        """
+        {coefficient: (estimate, standard error, unit)}; of what differs the mean.
+        """
+    @property
+    def drop(self) -> float:
+        """
+        Of the misfit, in units of its noise.
+        """
+    @property
+    def effect(self) -> str: ...
+    @property
+    def found(self) -> bool: ...
+    @property
+    def log10_p(self) -> float:
+        """
+        For itself.
+        """
+    @property
+    def p_adjusted(self) -> float:
+        """
+        For the number of tests.
+        """
+    @property
+    def spread(self) -> list[float]:
+        """
+        Of what differs: standard deviations.
+        """
+    @property
+    def stands_in(self) -> bool:
+        """
+        Its channel can't be the cause there.
+        """
+    @property
+    def vehicle(self) -> str:
+        """
+        Of one; else empty.
+        """
+
+class FleetDiagnosis:
+    """
+    What a fleet lacks.
+    """
+
+    _fields: typing.ClassVar[tuple] = (
+        "found",
+        "others",
+        "vehicles",
+        "flights",
+        "tests",
+        "misfit_before",
+        "misfit_after",
+        "flights_before",
+        "flights_after",
+        "notes",
+    )
+    def __getstate__(self) -> tuple: ...
+    def __init__(self, arg0: FleetDiagnosis) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: tuple) -> None: ...
+    def _asdict(self) -> dict[str, typing.Any]:
+        """
+        {field: value}, as of a named tuple.
+        """
+    @property
+    def flights(self) -> int: ...
+    @property
+    def flights_after(self) -> list[float]: ...
+    @property
+    def flights_before(self) -> list[float]:
+        """
+        Per reading, of each flight.
+        """
+    @property
+    def found(self) -> list[FleetFinding]:
+        """
+        In the order in which they were added.
+        """
+    @property
+    def misfit_after(self) -> float:
+        """
+        With all that was found.
+        """
+    @property
+    def misfit_before(self) -> float:
+        """
+        Per reading, over all flights.
+        """
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def others(self) -> list[FleetFinding]:
+        """
+        Beside those, best first.
+        """
+    @property
+    def tests(self) -> int: ...
+    @property
+    def vehicles(self) -> int: ...
+
 def accelerometer() -> Model: ...
 def angles_of_quaternion(
     quaternion: typing.Annotated[
@@ -4302,6 +4713,7 @@ def calibrate_jointly(
     arg3: Options,
     arg4: collections.abc.Sequence[tuple[str, str | None, str, typing.Any]],
 ) -> tuple[Calibration, Flight]: ...
+def calibrate_like(arg0: Calibration, arg1: Flight) -> Calibration: ...
 def certify(
     arg0: Model,
     arg1: dict,
@@ -4325,6 +4737,18 @@ def confidence_ellipse(
     arg4: typing.SupportsInt | typing.SupportsIndex,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
 def cost_landscape(arg0: Calibration, arg1: Flight) -> CostLandscape: ...
+def diagnose_fleet(
+    arg0: collections.abc.Sequence[
+        tuple[
+            str,
+            str,
+            FlightFactor,
+            collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        ]
+    ],
+    arg1: typing.SupportsFloat | typing.SupportsIndex,
+    arg2: typing.SupportsInt | typing.SupportsIndex,
+) -> FleetDiagnosis: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
 def effects_of(arg0: Model) -> list[CataloguedEffect]: ...
 def example_in_five_states() -> TwoStepProblem: ...
@@ -4352,6 +4776,10 @@ def export_to_file(
     arg13: str | None,
     arg14: bool,
 ) -> Exported: ...
+def find_spread(
+    arg0: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+    arg1: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+) -> tuple[float, float, float]: ...
 def fit(
     arg0: Model,
     arg1: dict,
@@ -4406,6 +4834,18 @@ def fit_noise(
     arg3: typing.SupportsInt | typing.SupportsIndex,
     arg4: NoiseModel | None,
 ) -> NoiseFit: ...
+def fit_population(
+    arg0: collections.abc.Sequence[
+        tuple[
+            str,
+            str,
+            FlightFactor,
+            collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        ]
+    ],
+    arg1: bool,
+    arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> Population: ...
 def fit_single_stage(
     model: Model,
     columns: dict,
@@ -4443,6 +4883,16 @@ def fit_trials(
     dict[int, str],
     dict[int, str],
 ]: ...
+def fit_vehicles(
+    arg0: collections.abc.Sequence[
+        tuple[
+            str,
+            str,
+            FlightFactor,
+            collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        ]
+    ],
+) -> list[VehicleFit]: ...
 def five_hole_probe(
     arg0: typing.SupportsFloat | typing.SupportsIndex,
     arg1: typing.SupportsFloat | typing.SupportsIndex,
@@ -4450,6 +4900,16 @@ def five_hole_probe(
         collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
     ],
 ) -> Model: ...
+def follow_vehicles(
+    arg0: collections.abc.Sequence[
+        tuple[
+            str,
+            str,
+            FlightFactor,
+            collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+        ]
+    ],
+) -> list[VehicleSeries]: ...
 def foreign_reader() -> typing.Any: ...
 def gather_figures(arg0: Calibration, arg1: Flight) -> FlightFigures: ...
 def hear_progress(arg0: typing.Any) -> None: ...
@@ -4458,6 +4918,7 @@ def in_shell(arg0: str) -> str: ...
 def join_rates(
     arg0: Flight, arg1: Flight, arg2: str, arg3: typing.SupportsFloat | typing.SupportsIndex
 ) -> Flight: ...
+def list_fleet_candidates(arg0: Calibration, arg1: Flight) -> list[str]: ...
 def magnetometer(
     arg0: typing.Annotated[
         collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
@@ -4469,6 +4930,10 @@ def magnetometer_in_nine_states(
     arg0: typing.SupportsFloat | typing.SupportsIndex,
 ) -> TwoStepProblem: ...
 def option_rows() -> list[OptionRow]: ...
+def p_of_distance(
+    arg0: typing.SupportsFloat | typing.SupportsIndex,
+    arg1: typing.SupportsFloat | typing.SupportsIndex,
+) -> float: ...
 def parse_calibration(
     arg0: str,
     arg1: str,
@@ -4537,6 +5002,14 @@ def read_calibration(
 ) -> Calibration: ...
 def read_csv(file: str, delimiter: str = "", decimal: str = "") -> Flight: ...
 def read_foreign_files(arg0: typing.Any) -> None: ...
+def reduce(
+    arg0: Calibration,
+    arg1: Flight,
+    arg2: collections.abc.Sequence[str],
+    arg3: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+    arg4: collections.abc.Sequence[str],
+    arg5: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
+) -> FlightFactor: ...
 def run_sepcal(
     words: collections.abc.Sequence[bytes], tables: collections.abc.Sequence[str] = []
 ) -> int: ...

@@ -680,7 +680,7 @@ class Calibration(Fit):
         return read
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _parse, (self.to_json(), self.own_effects, self.own_model)
+        return parse, (self.to_json(), self.own_effects, self.own_model)
 
 
 def _are_several(
@@ -738,7 +738,8 @@ def _is_of_aircraft(file: str) -> bool:
     return isinstance(read, dict) and ("aircraft" in read or {"path", "aero"} <= set(read))
 
 
-def _parse(text: str, effects: Sequence[Effect], own: Model | None = None) -> Calibration:
+def parse(text: str, effects: Sequence[Effect], own: Model | None = None) -> Calibration:
+    """A calibration of its JSON, its own effects, and its own model."""
     core = _core.parse_calibration(
         text, "pickle", to_core_effects(effects), None if own is None else own._core
     )

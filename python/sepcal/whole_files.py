@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import os
+import uuid
 import zipfile
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import IO, BinaryIO, TextIO
 
 from sepcal import _core
@@ -45,6 +47,23 @@ def open_scratch_part(archive: zipfile.ZipFile, name: str) -> IO[bytes]:
 def write_whole(texts: Mapping[str, str]) -> None:
     """Writes each file's text; raises Error, with nothing written or altered, where it can't."""
     _core.write_whole(dict(texts))
+
+
+def write_bytes(path: str, content: bytes) -> None:
+    """Writes a file that appears whole or not at all. Raises Error where it can't."""
+    scratch = f"{path}.{uuid.uuid4().hex}"
+    try:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        try:
+            with open(scratch, "xb") as file:
+                file.write(content)
+            os.replace(scratch, path)
+        except BaseException:
+            with suppress(OSError):
+                os.unlink(scratch)
+            raise
+    except OSError as error:
+        raise _core.Error(f"{in_line(path)}: {error.strerror}") from None
 
 
 def refuse_outputs(outputs: tuple[str, ...], inputs: tuple[str, ...]) -> None:

@@ -14,6 +14,7 @@ import pytest
 
 import sepcal
 from documents import BLOCKS, DOCUMENTS, EXAMPLES, ROOT, TYPED, run
+from sepcal.__main__ import make_parser
 from studies.trust.unmeasured import LINE, fly_with
 
 QUOTED = [block for block in BLOCKS if block["mark"].startswith("from ")]
@@ -63,9 +64,11 @@ def option_names(text):
 
 @pytest.fixture(scope="module")
 def options_in_help():
-    """What the verbs of both apps take."""
+    """What the verbs of the apps and of fleets take."""
     verbs = dict.fromkeys(("sepcal-pitot", "sepcal-mag"), VERBS) | {"sepcal-aircraft": AIRCRAFT}
     texts = [run(app, verb, "--help") for app in verbs for verb in verbs[app]]
+    fleet = make_parser()[1].choices["fleet"]._subparsers._group_actions[0].choices
+    texts += [verb.format_help() for verb in fleet.values()]
     return option_names("\n".join(texts))
 
 
@@ -186,7 +189,8 @@ def test_every_option_in_the_documents_is_in_the_help(options_in_help):
 
 
 def test_every_option_is_explained(options_in_help):
-    explained = option_names(read("commands.md")) | option_names(read("aircraft-reference.md"))
+    pages = ("commands.md", "aircraft-reference.md", "fleets.md")
+    explained = {name for page in pages for name in option_names(read(page))}
     assert options_in_help - {"--help", "--output"} <= explained
 
 

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A fleet's estimates as a page of text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sepcal.printing import aligned, in_line
+
+if TYPE_CHECKING:
+    from sepcal.fleet.fleet import Fleet
+
+MOST_VEHICLES = 40
+
+
+def fleet_page(fleet: Fleet) -> str:
+    """Vehicles with their parameters, what was left out, and what effects did."""
+    from sepcal.fleet.fleet import vehicle_error
+
+    vehicles = fleet.vehicles
+    flights = fleet.flights
+    misfit = float(np.median([flight.misfit for flight in flights.values()]))
+    lines = [
+        f"{len(flights)} flights of {len(vehicles)} vehicles, each with parameters of its own; "
+        f"own to each flight: {', '.join(fleet.own) or 'none'}.",
+        f"Misfit per reading of a typical flight, of noise alone 1: {misfit:.3g}.",
+        "",
+    ]
+    rows = [["vehicle", "flights", *fleet.parameters]]
+    for name, fit in list(vehicles.items())[:MOST_VEHICLES]:
+        cells = []
+        for k in range(len(fleet.parameters)):
+            error = vehicle_error(fit, k)
+            told = np.isfinite(fit.values[k])
+            cells.append(f"{fit.values[k]:.5g} +- {error:.2g}" if told else "not told")
+        rows.append([in_line(name), str(fit.flights), *cells])
+    lines += aligned(rows)
+    if len(vehicles) > MOST_VEHICLES:
+        lines.append(f"... and {len(vehicles) - MOST_VEHICLES} more")
+    for step in fleet.added:
+        lines += [
+            "",
+            f"With {in_line(step['effect'])} the error fell from {step['rmse_before']:.4g} to "
+            f"{step['rmse_after']:.4g}, in {step['flights_better']} of {step['flights']} flights.",
+        ]
+    if fleet.left_out:
+        lines += ["", f"Left out: {len(fleet.left_out)} logs."]
+        lines += [
+            f"  {in_line(name)}: {in_line(reason)}"
+            for name, reason in list(fleet.left_out.items())[:5]
+        ]
+    return "\n".join(lines)
