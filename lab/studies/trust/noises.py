@@ -58,7 +58,7 @@ def _bursty(of: Draw) -> Draw:
     return lambda rng, time: of(rng, time) * _bursts(rng, time) / 1.9
 
 
-def _gauss_markov(seconds: float) -> Draw:
+def gauss_markov(seconds: float) -> Draw:
     """White noise beside a drift of its own size, as the velocity of a satellite receiver."""
 
     def draw(rng: np.random.Generator, time: Array) -> Array:
@@ -124,9 +124,9 @@ OUTPUT_NOISES: dict[str, Draw] = {
     "1/f^1.5": _power_law(1.5),
     "bursty": _bursty(_white),
     "bursty AR": _bursty(first_order(0.9)),
-    "white + GM 10 s": _gauss_markov(10.0),
-    "white + GM 60 s": _gauss_markov(60.0),
-    "white + GM 300 s": _gauss_markov(300.0),
+    "white + GM 10 s": gauss_markov(10.0),
+    "white + GM 60 s": gauss_markov(60.0),
+    "white + GM 300 s": gauss_markov(300.0),
     "white + random walk": _random_walk,
     "outliers": _outliers,
     "heteroscedastic": _heteroscedastic,

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fleets of 60 vehicles with 20 flights each: what is found in them, and what is found in none.
+
+Flights of a tube are simulated one by one, in white noise or in noise that wanders (a Gauss-Markov
+process of 60 s in the airspeed and in the velocities, as large as the white noise, on a coarse
+airspeed), and reduced at their true parameters. Fleets are drawn from these triangles: each flight
+keeps its columns and, up to a sign, its own noise; the vehicle's parameters and the hidden effect
+join its residual. That this equals flights simulated with the effect is a finding of its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import norm
+
+import sepcal
+from sepcal import _core
+from studies.study import Finding, Outcome, Progress, Study, seed_range, seeds
+from studies.trust.noises import gauss_markov
+
+Array = NDArray[np.float64]
+
+FLEETS = 100  # of each kind
+VEHICLES, FLIGHTS = 60, 20
+POOL = 600  # flights that fleets are drawn from
+ROWS = 600  # at 5 Hz
+SPREAD = {"s_va": 0.02, "c_va": 0.3}  # of parameters between vehicles
+WIND = ["w_n", "w_e", "w_d"]
+HIDDEN = (
+    "pressure_offset[throttle]",
+    "wind[altitude_m]",
+    "airspeed_bias[r]",
+    "airspeed_scale[flap]",
+)
+AGE = 365.0  # days, over which a vehicle's flights are spread
+LEVEL = 0.01
+WHITE = 0.15  # m/s, the airspeed's noise in simulate()
+
+
+def fly(seed: int, wanders: bool, hide: dict[str, float] | None = None) -> sepcal.Flight:
+    """A flight; what wanders is added to what was simulated."""
+    rng = np.random.default_rng([seed, 45])
+    wind = {"w_n": float(rng.normal(0.0, 4.0)), "w_e": float(rng.normal(0.0, 4.0))}
+    flown = sepcal.simulate("pitot-static", rows=ROWS, seed=seed, parameters=wind, hide=hide)
+    columns = {name: np.array(values) for name, values in flown.items()}
+    if wanders:
+        time = columns["time_s"]
+        for name, size in (("airspeed_mps", WHITE), ("vn_mps", 0.1), ("ve_mps", 0.1)):
+            columns[name] = columns[name] + size * gauss_markov(60.0)(rng, time)
+        columns["airspeed_mps"] = np.round(columns["airspeed_mps"], 1)
+    return sepcal.Flight(columns)
+
+
+TRUTH = {"s_va": 0.95, "c_va": -0.6}
+
+
+def reduce_flight(
+    seed: int, wanders: bool, hide: dict[str, float] | None = None
+) -> _core.FlightFactor | None:
+    """Its triangle at the true parameters; None where it can't be calibrated."""
+    flight = fly(seed, wanders, hide)
+    try:
+        core = sepcal.fit(sepcal.PitotStatic(), flight, threads=1).core
+        names = _core.list_fleet_candidates(core, flight._core)
+        return _core.reduce(core, flight._core, WIND, TRUTH, names, {})
+    except sepcal.Error:
+        return None
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Flights that fleets are drawn from."""
+
+    factors: list[_core.FlightFactor]
+
+    def columns(self, effect: str) -> list[int]:
+        """Places of the effect's coefficients among a triangle's columns."""
+        first = self.factors[0]
+        p = len(first.parameters)
+        return [p + k for k, (name, *_) in enumerate(first.columns) if name == effect]
+
+    def flight_error(self, effect: str) -> float:
+        """What flights scatter by in the effect's first coefficient, of a typical flight."""
+        estimates = []
+        weights = []
+        for factor in self.factors:
+            T = np.asarray(factor.triangle)
+            p = len(factor.parameters)
+            G = T[:, [*range(p), *self.columns(effect)]]
+            information = G.T @ G
+            solution = np.linalg.lstsq(G, T[:, -1], rcond=None)[0]
+            estimates.append(solution[p])
+            weights.append(1.0 / np.linalg.pinv(information)[p, p])
+        pulls = np.array(estimates) * np.sqrt(weights)
+        scatter = 1.4826 * np.median(np.abs(pulls - np.median(pulls)))
+        return float(max(1.0, scatter) / np.sqrt(np.median(weights)))
+
+
+def make_pool(wanders: bool, processes: int | None, count: int = POOL) -> Pool:
+    """Flights with all candidates alike."""
+    with ProcessPoolExecutor(processes) as workers:
+        found = list(
+            workers.map(partial(reduce_flight, wanders=wanders), range(count), chunksize=8)
+        )
+    factors = [factor for factor in found if factor is not None]
+    typical = max((tuple(f.columns) for f in factors[:20]), key=len)
+    return Pool([factor for factor in factors if tuple(factor.columns) == typical])
+
+
+def draw(
+    pool: Pool,
+    rng: np.random.Generator,
+    *,
+    everywhere: dict[str, float] | None = None,
+    in_vehicles: tuple[str, float, Sequence[int]] | None = None,
+    ages: dict[str, float] | None = None,
+) -> list[tuple[str, str, _core.FlightFactor, dict[str, float]]]:
+    """A fleet: what is hidden in all, in some vehicles, or grows with a flight's age."""
+    p = len(pool.factors[0].parameters)
+    names = list(pool.factors[0].parameters)
+    fleet = []
+    for vehicle in range(VEHICLES):
+        moved = np.array([SPREAD[name] * rng.standard_normal() for name in names])
+        for number in range(FLIGHTS):
+            factor = pool.factors[int(rng.integers(len(pool.factors)))]
+            T = np.array(factor.triangle)
+            age = float(rng.uniform(0.0, AGE))
+            theta = moved + np.array([(ages or {}).get(name, 0.0) * age for name in names])
+            T[:, -1] = rng.choice([-1.0, 1.0]) * T[:, -1] + T[:, :p] @ theta
+            hidden = dict(everywhere or {})
+            if in_vehicles and vehicle in in_vehicles[2]:
+                hidden[in_vehicles[0]] = in_vehicles[1]
+            for effect, size in hidden.items():
+                T[:, -1] += size * T[:, pool.columns(effect)[0]]
+            made = _core.FlightFactor.__new__(_core.FlightFactor)
+            state = dict(factor._asdict()) | {"triangle": T}
+            made.__setstate__(tuple(state[name] for name in _core.FlightFactor._fields))
+            name = f"{vehicle}-{number}"
+            fleet.append((name, f"v{vehicle:02d}", made, {"age_days": age}))
+    return fleet
+
+
+def what_shows(error: float, tests: float) -> float:
+    """The size that a test of this error finds 19 times in 20, at the level and so many tests."""
+    return float(error * (norm.isf(LEVEL / (2.0 * tests)) + norm.isf(0.05)))
+
+
+def run_one(seed: int, pool: Pool, kind: str, errors: dict[str, float]) -> tuple[bool, int]:
+    """Whether what is hidden was found where it is, and how much else was."""
+    rng = np.random.default_rng([seed, 4545])
+    effect = HIDDEN[seed % len(HIDDEN)]
+    tests = len({name for name, *_ in pool.factors[0].columns})
+    one_flight = what_shows(errors[effect], tests)
+    one_vehicle = what_shows(errors[effect] / math.sqrt(FLIGHTS), tests)
+    sign = float(rng.choice([-1.0, 1.0]))
+    if kind == "nothing":
+        found = _core.diagnose_fleet(draw(pool, rng), LEVEL, 8).found
+        return not found, len(found)
+    if kind == "everywhere":
+        size = sign * one_flight / 5.0
+        found = _core.diagnose_fleet(draw(pool, rng, everywhere={effect: size}), LEVEL, 8).found
+        hits = [one for one in found if effect in (one.effect, *one.as_good)]
+        return bool(hits), len(found) - len(hits)
+    if kind == "vehicles":
+        chosen = sorted(rng.choice(VEHICLES, 3, replace=False).tolist())
+        hidden = (effect, sign * 2.0 * one_vehicle, chosen)
+        found = _core.diagnose_fleet(draw(pool, rng, in_vehicles=hidden), LEVEL, 8).found
+        named = {one.vehicle for one in found if one.vehicle}
+        wanted = {f"v{vehicle:02d}" for vehicle in chosen}
+        return named == wanted, sum(one.effect != effect for one in found)
+    # A scale that ages, or one that follows temperature: by what takes as much.
+    if kind == "ages":
+        found = _core.diagnose_fleet(
+            draw(pool, rng, ages={"s_va": sign * 0.01 / AGE}), LEVEL, 8
+        ).found
+        first = found[0].effect if found else ""
+        return first == "s_va[age_days]", len(found) - 1
+    raise AssertionError(kind)
+
+
+def run(arguments: argparse.Namespace, progress: Progress) -> Outcome:
+    """Draws all kinds in both noises."""
+    numbers = seed_range(arguments)
+    findings = []
+    words = []
+    kinds = ("nothing", "everywhere", "vehicles", "ages")
+    for place, wanders in enumerate((False, True)):
+        noise = "wandering" if wanders else "white"
+        pool = make_pool(wanders, arguments.processes)
+        errors = {effect: pool.flight_error(effect) for effect in HIDDEN}
+        for step, kind in enumerate(kinds):
+            with ProcessPoolExecutor(arguments.processes) as workers:
+                work = partial(run_one, pool=pool, kind=kind, errors=errors)
+                told = list(workers.map(work, numbers, chunksize=5))
+            right = sum(hit for hit, _ in told)
+            others = sum(count > 0 for _, count in told)
+            n = len(told)
+            what = {
+                "nothing": "nothing hidden, nothing found",
+                "everywhere": "a fifth of what a flight shows, found",
+                "vehicles": "three vehicles named, and no other",
+                "ages": "a scale that ages, told first",
+            }[kind]
+            least = math.ceil((0.98 if kind == "nothing" else 0.95) * n)
+            findings.append(
+                Finding(f"{noise}: {what}", f"{right} of {n}", f"at least {least}", right >= least)
+            )
+            if kind in ("everywhere", "ages"):
+                findings.append(
+                    Finding(
+                        f"{noise}: {kind}, something else found too",
+                        f"{others} of {n}",
+                        f"at most {math.floor(0.1 * n)}",
+                        others <= 0.1 * n,
+                    )
+                )
+            words.append(f"{noise}, {kind}: {right} of {n}")
+            progress((place * len(kinds) + step + 1) / (2 * len(kinds)))
+    return Outcome("; ".join(words), findings)
+
+
+STUDY = Study(
+    "fleets",
+    "What 60 vehicles of 20 flights show together, and how often something that is not there.",
+    run,
+    seeds(FLEETS, "fleets of each kind"),
+)
