@@ -186,6 +186,40 @@ def run_one(seed: int, pool: Pool, kind: str, errors: dict[str, float]) -> tuple
     raise AssertionError(kind)
 
 
+def apart(seed: int, wanders: bool, effect: str, size: float) -> float:
+    """How far a flight simulated with the effect is from one drawn with it, in standard errors."""
+    estimates = []
+    for hide in (None, {effect: size}):
+        factor = reduce_flight(seed, wanders, hide)
+        assert factor is not None
+        T = np.array(factor.triangle)
+        p = len(factor.parameters)
+        columns = [p + k for k, (name, *_) in enumerate(factor.columns) if name == effect]
+        if hide is None:
+            T[:, -1] += size * T[:, columns].sum(axis=1)  # simulate() gives all components the size
+        X = T[:, [*range(p), *columns]]
+        estimates.append(np.linalg.lstsq(X, T[:, -1], rcond=None)[0][p])
+        error = float(np.sqrt(np.linalg.pinv(X.T @ X)[p, p]))
+    return float((estimates[1] - estimates[0]) / error)
+
+
+def agreement(wanders: bool, errors: dict[str, float], tests: float) -> Finding:
+    """Of 40 flights with each effect as large as fleets have it in all vehicles."""
+    found = [
+        apart(seed, wanders, effect, what_shows(errors[effect], tests) / 5.0)
+        for effect in HIDDEN
+        for seed in range(10)
+    ]
+    rms = float(np.sqrt(np.mean(np.square(found))))
+    noise = "wandering" if wanders else "white"
+    return Finding(
+        f"{noise}: flights drawn and simulated differ, rms",
+        f"{rms:.3f} errors",
+        "at most 0.1",
+        rms <= 0.1,
+    )
+
+
 def run(arguments: argparse.Namespace, progress: Progress) -> Outcome:
     """Draws all kinds in both noises."""
     numbers = seed_range(arguments)
@@ -196,6 +230,8 @@ def run(arguments: argparse.Namespace, progress: Progress) -> Outcome:
         noise = "wandering" if wanders else "white"
         pool = make_pool(wanders, arguments.processes)
         errors = {effect: pool.flight_error(effect) for effect in HIDDEN}
+        tests = len({name for name, *_ in pool.factors[0].columns})
+        findings.append(agreement(wanders, errors, tests))
         for step, kind in enumerate(kinds):
             with ProcessPoolExecutor(arguments.processes) as workers:
                 work = partial(run_one, pool=pool, kind=kind, errors=errors)

@@ -121,7 +121,10 @@ class _Line:
         task = in_line(self._task) or ("at work" if self._is_timed else "")
         text = ": ".join(filter(None, (self._name, task)))
         if self._is_timed:
-            text += f", {time.monotonic() - self._begun:.0f} s"
+            gone = time.monotonic() - self._begun
+            text += f", {gone:.0f} s"
+            if 0.02 < self._fraction < 1.0:
+                text += f", about {gone * (1.0 / self._fraction - 1.0):.0f} s left"
         if self._fraction > 0.0:
             filled = round(WIDTH * self._fraction)
             bar = f"[{'#' * filled}{'.' * (WIDTH - filled)}] {int(100 * self._fraction):3d} %"

@@ -6,6 +6,9 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
+import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
@@ -150,6 +153,40 @@ def test_the_bits_do_not_depend_on_the_workers(
             folder, sepcal.PitotStatic(), names=NAMES, cluster=client.get_executor()
         )
         assert bits_of(other) == bits_of(fleet)
+
+
+def test_a_worker_is_killed_on_the_way(folder: Path, fleet: sepcal.Fleet, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    killed = []
+
+    def kill(cluster: object) -> None:
+        """SIGKILL of a worker once a few answers are there."""
+        for _ in range(2000):
+            if len(list(tmp_path.rglob("*.npz"))) >= 3:
+                process = next(iter(cluster.workers.values()))  # type: ignore[attr-defined]
+                os.kill(process.pid, signal.SIGKILL)
+                killed.append(process.pid)
+                return
+            time.sleep(0.01)
+
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        killer = threading.Thread(target=kill, args=(cluster,))
+        killer.start()
+        other = sepcal.Fleet(
+            folder,
+            sepcal.PitotStatic(),
+            names=NAMES,
+            cluster=client.get_executor(),
+            store=tmp_path,
+        )
+        assert bits_of(other) == bits_of(fleet)
+        killer.join()
+    assert killed
 
 
 @pytest.fixture

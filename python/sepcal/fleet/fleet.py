@@ -470,15 +470,16 @@ class Fleet:
         threads = partial(ThreadPoolExecutor, os.cpu_count())
         cluster = self._cluster if self._cluster is not None or len(open_ones) < 2 else threads
         done = 0
+        every = None if self._progress is False else 10.0
         try:
-            with show_progress("sepcal fleet", self._progress, every=10.0) as tell:
+            with show_progress("sepcal fleet", self._progress, every=every) as tell:
                 for place, answer in stream(visit, open_ones, cluster, batch=batch, lost=_lose):
                     answers[answer.name] = answer
                     self.cpu_seconds += answer.seconds
                     if self._store is not None:
                         self._store.keep(open_ones[place], answer)
                     done += 1
-                    tell(f"{task}: {done} of {len(open_ones)}", done / len(open_ones))
+                    tell(f"{task}, {len(open_ones)} logs", done / len(open_ones))
         finally:
             if self._store is not None:
                 self._store.save_index()
