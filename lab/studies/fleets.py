@@ -122,13 +122,19 @@ def draw(
     everywhere: dict[str, float] | None = None,
     in_vehicles: tuple[str, float, Sequence[int]] | None = None,
     ages: dict[str, float] | None = None,
+    thetas: list[Array] | None = None,
 ) -> list[tuple[str, str, _core.FlightFactor, dict[str, float]]]:
-    """A fleet: what is hidden in all, in some vehicles, or grows with a flight's age."""
+    """A fleet: what is hidden in all, in some vehicles, or grows with a flight's age.
+
+    `thetas` takes each vehicle's parameters, less those that the pool was reduced at.
+    """
     p = len(pool.factors[0].parameters)
     names = list(pool.factors[0].parameters)
     fleet = []
     for vehicle in range(VEHICLES):
         moved = np.array([SPREAD[name] * rng.standard_normal() for name in names])
+        if thetas is not None:
+            thetas.append(moved)
         for number in range(FLIGHTS):
             factor = pool.factors[int(rng.integers(len(pool.factors)))]
             T = np.array(factor.triangle)
@@ -203,6 +209,36 @@ def apart(seed: int, wanders: bool, effect: str, size: float) -> float:
     return float((estimates[1] - estimates[0]) / error)
 
 
+def cover(seed: int, pool: Pool) -> dict[str, tuple[int, int]]:
+    """Of 95 % intervals how many hold: of means, vehicles, and one whose prior is the fleet."""
+    rng = np.random.default_rng([seed, 4546])
+    truth: list[Array] = []
+    fleet = draw(pool, rng, thetas=truth)
+    found = _core.fit_population(fleet, False, np.zeros(0))
+    centre = np.asarray(pool.factors[0].values)
+    mean, of_mean = np.asarray(found.mean), np.asarray(found.mean_covariance)
+    means = np.abs(mean - centre) < 1.96 * np.sqrt(np.diag(of_mean))
+    off = np.abs(np.asarray(found.shrunken).T - (centre + np.array(truth)))
+    vehicles = off < 1.96 * np.asarray(found.shrunken_errors).T
+    new = np.array([SPREAD[name] * rng.standard_normal() for name in found.parameters])
+    factor = pool.factors[int(rng.integers(len(pool.factors)))]
+    T = np.array(factor.triangle)
+    p = len(new)
+    z = rng.choice([-1.0, 1.0]) * T[:, -1] + T[:, :p] @ new
+    known = np.diag(1.0 / np.diag(np.asarray(found.spread) + of_mean))
+    alone = np.linalg.lstsq(T[:, :p], z, rcond=None)[0]
+    scale = np.diag(1.0 / np.sqrt(found.inflation))
+    flown = scale @ T[:, :p].T @ T[:, :p] @ scale
+    covariance = np.linalg.inv(flown + known)
+    estimate = covariance @ (flown @ alone + known @ (mean - centre))
+    one = np.abs(estimate - new) < 1.96 * np.sqrt(np.diag(covariance))
+    return {
+        "means": (int(means.sum()), means.size),
+        "vehicles": (int(vehicles.sum()), vehicles.size),
+        "a new vehicle": (int(one.sum()), one.size),
+    }
+
+
 def agreement(wanders: bool, errors: dict[str, float], tests: float) -> Finding:
     """Of 40 flights with each effect as large as fleets have it in all vehicles."""
     found = [
@@ -232,6 +268,21 @@ def run(arguments: argparse.Namespace, progress: Progress) -> Outcome:
         errors = {effect: pool.flight_error(effect) for effect in HIDDEN}
         tests = len({name for name, *_ in pool.factors[0].columns})
         findings.append(agreement(wanders, errors, tests))
+        with ProcessPoolExecutor(arguments.processes) as workers:
+            twice = [*numbers, *(number + 100_000 for number in numbers)]
+            covered = list(workers.map(partial(cover, pool=pool), twice, chunksize=5))
+        for what in covered[0]:
+            hits, count = (sum(one[what][k] for one in covered) for k in (0, 1))
+            share = hits / count
+            findings.append(
+                Finding(
+                    f"{noise}: 95 % intervals of {what} hold",
+                    f"{100 * share:.1f} % of {count}",
+                    "92 to 97 %",
+                    0.92 <= share <= 0.97,
+                )
+            )
+            words.append(f"{noise}, {what}: {100 * share:.1f} %")
         for step, kind in enumerate(kinds):
             with ProcessPoolExecutor(arguments.processes) as workers:
                 work = partial(run_one, pool=pool, kind=kind, errors=errors)

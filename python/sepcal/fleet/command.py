@@ -41,6 +41,10 @@ def add_to(commands: Verbs[argparse.ArgumentParser]) -> None:
         help="a table with a column `file`, and vehicle, date, numbers and words in others",
     )  # fmt: skip
     verb.add_argument(
+        "--share", metavar="NAME", default="vehicle",
+        help="the field or column whose flights share parameters: sensor, say [vehicle]",
+    )  # fmt: skip
+    verb.add_argument(
         "--own", action="append", metavar="NAME",
         help="a parameter that each flight has for itself [w_n, w_e, w_d]",
     )  # fmt: skip
@@ -159,6 +163,7 @@ def _fit(given: argparse.Namespace) -> int:
             own=given.own,
             names=given.names,
             table=given.table,
+            share=given.share,
             candidates=given.only,
             cluster=cluster,
             store=given.output,

@@ -86,6 +86,7 @@ class Fleet:
         own: Sequence[str] | None = None,
         names: str | None = None,
         table: str | os.PathLike[str] | None = None,
+        share: str = "vehicle",
         candidates: Sequence[str] | None = None,
         cluster: Executors = None,
         store: str | os.PathLike[str] | None = None,
@@ -106,6 +107,7 @@ class Fleet:
                 attributes that parameters may grow with, other words are what flights are compared
                 by.
             table: A CSV or Parquet file with a column `file` and the same as other columns.
+            share: The field or column whose flights share parameters: "sensor", say.
             candidates: Effects to be tested [all that are linear].
             cluster: A concurrent.futures.Executor (Dask: client.get_executor()), a function that
                 makes one, as ProcessPoolExecutor, or None: here.
@@ -118,7 +120,7 @@ class Fleet:
         Raises:
             Error: No log; a name that does not fit; a log that the table lacks.
         """
-        self.logs = find_logs(logs, names, table)
+        self.logs = find_logs(logs, names, table, share)
         self._like = like
         self._options = options
         self._own = None if own is None else tuple(to_names("own", own))

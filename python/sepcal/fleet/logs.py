@@ -145,12 +145,13 @@ def find_logs(
     logs: str | os.PathLike[str] | Iterable[str | os.PathLike[str]] | None,
     names: str | None = None,
     table: str | os.PathLike[str] | None = None,
+    share: str = "vehicle",
 ) -> list[Log]:
     """The logs with what names and the table say of them.
 
     A file of the table is one of `logs` by its path or its name; without `logs` the table's files
-    are the logs, relative to the table. Without a field or column `vehicle` the folder is the
-    vehicle.
+    are the logs, relative to the table. `share` is the field or column whose logs share parameters;
+    without `vehicle` the folder is the vehicle.
 
     Raises Error for no log, for a name that does not fit, and for a log that the table lacks.
     """
@@ -177,6 +178,13 @@ def find_logs(
                 raise _core.Error(f"{in_line(file)} does not fit names={in_line(names or '')!r}")
             labels |= match.groupdict()
         told.append(labels)
+    if share != "vehicle":
+        lacking = [file for file, labels in zip(files, told, strict=True) if not labels.get(share)]
+        if lacking:
+            raise _core.Error(
+                f"{in_line(lacking[0])} has no '{in_line(share)}', which is to share parameters"
+            )
+        told = [labels | {"vehicle": labels[share]} for labels in told]
     return _describe(files, told)
 
 
