@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -53,6 +54,19 @@ def fleet(folder: Path) -> sepcal.Fleet:
     made = sepcal.Fleet(folder, sepcal.PitotStatic(), names=NAMES)
     assert len(made.flights) == 12
     return made
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    """Two workers, each a process of one thread, that a nanny starts anew when they die."""
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(
+            processes=True, n_workers=2, threads_per_worker=1, dashboard_address=":0"
+        ) as cluster,
+        distributed.Client(cluster) as made,
+    ):
+        yield made
 
 
 def bits_of(fleet: sepcal.Fleet) -> str:
@@ -131,7 +145,7 @@ def test_a_vehicle_is_scipys_fit_of_all_its_rows(folder: Path) -> None:
 
 @pytest.mark.parametrize("workers", ["one thread", "threads", "processes", "dask"])
 def test_the_bits_do_not_depend_on_the_workers(
-    folder: Path, fleet: sepcal.Fleet, workers: str
+    folder: Path, fleet: sepcal.Fleet, workers: str, request: pytest.FixtureRequest
 ) -> None:
     make = {
         "one thread": partial(ThreadPoolExecutor, 1),
@@ -142,50 +156,37 @@ def test_the_bits_do_not_depend_on_the_workers(
         other = sepcal.Fleet(folder, sepcal.PitotStatic(), names=NAMES, cluster=make[workers])
         assert bits_of(other) == bits_of(fleet)
         return
-    distributed = pytest.importorskip("distributed")
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        other = sepcal.Fleet(
-            folder, sepcal.PitotStatic(), names=NAMES, cluster=client.get_executor()
-        )
-        assert bits_of(other) == bits_of(fleet)
+    client = request.getfixturevalue("client")
+    other = sepcal.Fleet(folder, sepcal.PitotStatic(), names=NAMES, cluster=client.get_executor())
+    assert bits_of(other) == bits_of(fleet)
 
 
-def test_a_worker_is_killed_on_the_way(folder: Path, fleet: sepcal.Fleet, tmp_path: Path) -> None:
-    distributed = pytest.importorskip("distributed")
+def test_a_worker_is_killed_on_the_way(
+    folder: Path, fleet: sepcal.Fleet, tmp_path: Path, client: Any
+) -> None:
     killed = []
 
-    def kill(cluster: object) -> None:
+    def kill() -> None:
         """SIGKILL of a worker once a few answers are there."""
-        for _ in range(2000):
+        for _ in range(6000):
             if len(list(tmp_path.rglob("*.npz"))) >= 3:
-                process = next(iter(cluster.workers.values()))  # type: ignore[attr-defined]
+                process = next(iter(client.cluster.workers.values()))
                 os.kill(process.pid, signal.SIGKILL)
                 killed.append(process.pid)
                 return
             time.sleep(0.01)
 
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        killer = threading.Thread(target=kill, args=(cluster,))
-        killer.start()
-        other = sepcal.Fleet(
-            folder,
-            sepcal.PitotStatic(),
-            names=NAMES,
-            cluster=client.get_executor(),
-            store=tmp_path,
-        )
-        assert bits_of(other) == bits_of(fleet)
-        killer.join()
+    killer = threading.Thread(target=kill)
+    killer.start()
+    other = sepcal.Fleet(
+        folder,
+        sepcal.PitotStatic(),
+        names=NAMES,
+        cluster=client.get_executor(),
+        store=tmp_path,
+    )
+    assert bits_of(other) == bits_of(fleet)
+    killer.join()
     assert killed
 
 
