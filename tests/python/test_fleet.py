@@ -268,13 +268,15 @@ def test_a_bad_log_ends_nothing(folder: Path, fleet: sepcal.Fleet, tmp_path: Pat
     shutil.copytree(folder, copies)
     (copies / "V1_2026-04-10.csv").write_text("time_s,airspeed_mps\n0,1\n")
     (copies / "V9_2026-04-11.csv").write_bytes(os.urandom(4000))
+    shutil.copy(copies / f"V1_{DAYS[0]}.csv", copies / "V3_2026-04-13.csv")
     (copies / "V1_2026-04-12.csv").write_bytes(b"\x80\x04cos\nsystem\n(S'touch PWNED'\ntR.")
     other = sepcal.Fleet(copies, sepcal.PitotStatic(), names=NAMES)
     told, expected = json.loads(other.to_json()), json.loads(fleet.to_json())
     assert [one["parameters"] for one in told["vehicles"]] == [
         one["parameters"] for one in expected["vehicles"]
     ]
-    assert len(other.left_out) == 3
+    assert len(other.left_out) == 4
+    assert other.left_out["V3_2026-04-13.csv"] == f"its bytes are those of V1_{DAYS[0]}.csv"
     assert all("\n" not in reason for reason in other.left_out.values())
     assert not (copies / "PWNED").exists()
 

@@ -413,9 +413,14 @@ class Fleet:
     ) -> dict[str, FleetFlight]:
         flights = {}
         logs = {log.name: log for log in self.logs}
+        first_of: dict[str, str] = {}  # a flight that counted twice would be twice as sure
         for name, answer in visits.items():
             if answer.factor is None:
                 self._left_out[name] = answer.error
+                continue
+            other = first_of.setdefault(answer.sha256, name)
+            if other != name:
+                self._left_out[name] = f"its bytes are those of {other}"
                 continue
             flights[name] = FleetFlight(
                 logs[name], answer.calibration, answer.factor, answer.sha256, answer.rows
