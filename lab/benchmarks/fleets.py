@@ -83,7 +83,7 @@ def measure(folder: Path, count: int, candidates: Sequence[str] | None) -> dict[
         "flights": flights,
         "rows": ROWS,
         "columns": len(one.factor.columns),
-        "passes": fleet.passes,
+        "passes": fleet.fitted.passes,
         "fit_seconds": fitted - begun,
         "fit_cpu": fitted_cpu - cpu,
         "diagnose_seconds": done - fitted,

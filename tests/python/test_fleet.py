@@ -226,7 +226,7 @@ def test_a_run_is_taken_up_where_it_ended(
     shutil.copytree(folder, copies)
     base = sepcal.fit(sepcal.PitotStatic(), copies / f"V1_{DAYS[0]}.csv")
     ask = partial(sepcal.Fleet, copies, base, names=NAMES, store=tmp_path / "store")
-    from sepcal.fleet import fleet as room
+    from sepcal.fleet import passes as room
 
     visit, visited = room.visit, []
 

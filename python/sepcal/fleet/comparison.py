@@ -15,7 +15,7 @@ from sepcal.fleet.logs import read_date
 from sepcal.printing import aligned, in_line
 
 if TYPE_CHECKING:
-    from sepcal.fleet.fleet import FleetFlight
+    from sepcal.fleet.passes import FleetFlight
 
 GROUPS = 5  # of a number, of as many flights each
 FAILS_FROM = 1.5  # times the fleet's median misfit

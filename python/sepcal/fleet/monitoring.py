@@ -16,7 +16,7 @@ from sepcal.fleet.logs import AGE
 from sepcal.printing import aligned, in_line
 
 if TYPE_CHECKING:
-    from sepcal.fleet.fleet import FleetFlight
+    from sepcal.fleet.passes import FleetFlight
 
 LIMIT = 3.0  # standard errors, as Shewhart's charts have it
 ALARM = 3  # an exit code, as of a diagnosis that found something

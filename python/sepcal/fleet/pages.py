@@ -17,7 +17,7 @@ MOST_VEHICLES = 40
 
 def fleet_page(fleet: Fleet) -> str:
     """Vehicles with their parameters, what was left out, and what effects did."""
-    from sepcal.fleet.fleet import vehicle_error
+    from sepcal.fleet.passes import vehicle_error
 
     vehicles = fleet.vehicles
     flights = fleet.flights

@@ -8,8 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from sepcal.fleet.findings import FleetDiagnosis, sentence_of
-from sepcal.fleet.fleet import Fleet, vehicle_error
+from sepcal.fleet.fleet import Fleet
 from sepcal.fleet.monitoring import Monitoring
+from sepcal.fleet.passes import vehicle_error
 from sepcal.markup import Html, html, in_figure, join
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure, Grid, Page, Section, build_page, read_plotly
