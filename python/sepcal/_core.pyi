@@ -4565,7 +4565,7 @@ class FleetFinding:
     @property
     def drop(self) -> float:
         """
-        Of the misfit, in units of its noise.
+        Of the misfit (-2 ln L), as the noise models have it.
         """
     @property
     def effect(self) -> str: ...

@@ -147,7 +147,7 @@ struct FleetFinding {
   std::vector<double> spread = {};             // that differ: standard deviation between vehicles
   double log10_p = 0.0;
   double p_adjusted = 1.0;  // after Bonferroni, for all that was asked of its cause
-  double drop = 0.0;        // of the misfit, in units of its noise as flights scatter
+  double drop = 0.0;        // of the misfit (-2 ln L), as noise models have it
   bool found = false;
   bool stands_in = false;                 // for what can be the cause, by its channel
   std::vector<std::string> as_good = {};  // that of the fleet takes as much in its place: -2 ln L

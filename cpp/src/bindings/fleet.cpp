@@ -136,7 +136,7 @@ void define_results_of_fleets(py::module_& module) {
       .field("spread", &FleetFinding::spread, "Of what differs: standard deviations.")
       .field("log10_p", &FleetFinding::log10_p, "For itself.")
       .field("p_adjusted", &FleetFinding::p_adjusted, "For the number of tests.")
-      .field("drop", &FleetFinding::drop, "Of the misfit, in units of its noise.")
+      .field("drop", &FleetFinding::drop, "Of the misfit (-2 ln L), as the noise models have it.")
       .field("found", &FleetFinding::found, "")
       .field("as_good", &FleetFinding::as_good, "Effects that explain as much in its place.")
       .field("stands_in", &FleetFinding::stands_in, "Its channel can't be the cause there.")

@@ -239,8 +239,9 @@ std::optional<Tested> Recipe::test_everywhere(std::size_t g, const VehicleScores
   const VectorXd estimate = common->estimate.tail(q);
   const MatrixXd covariance = common->covariance.bottomRightCorner(q, q);
   const MatrixXd plain = common->plain.bottomRightCorner(q, q) * vehicles.pooled();
-  const double drop = estimate.dot(plain.ldlt().solve(estimate));
-  const double by_noise = numerics::log10_chi_squared_tail(drop, static_cast<double>(q));
+  const double drop = estimate.dot(plain.ldlt().solve(estimate)) * vehicles.pooled();
+  const double by_noise =
+      numerics::log10_chi_squared_tail(drop / vehicles.pooled(), static_cast<double>(q));
   const VectorXd errors = covariance.diagonal().cwiseMax(plain.diagonal()).cwiseSqrt();
   return Tested{.finding = {.cause = group.cause,
                             .effect = group.effect,
@@ -267,8 +268,12 @@ void Recipe::test_vehicles(std::size_t g, const VehicleScores& asked,
   const double control = std::max(1.0, typical);
   for (std::size_t i = 0; i < asked.vehicles.size(); ++i) {
     const VehicleScore& score = asked.scores[i];
+    const VectorXd d = score.estimate - mean;
     const double F = ratios[i] / control;
-    const double freedom = asked.moderation.freedoms[i];
+    // Where no vehicle's flights show their scatter, that between vehicles is all there is.
+    const double freedom = asked.moderation.is_known
+                               ? asked.moderation.freedoms[i]
+                               : static_cast<double>(asked.vehicles.size()) - 1.0;
     const MatrixXd covariance =
         score.information.inverse() * (asked.moderation.inflations[i] * control);
     tested.push_back(
@@ -279,7 +284,7 @@ void Recipe::test_vehicles(std::size_t g, const VehicleScores& asked,
                          coefficients(group, score.estimate, covariance.diagonal().cwiseSqrt()),
                      .log10_p = std::isinf(freedom) ? numerics::log10_chi_squared_tail(q * F, q)
                                                     : numerics::log10_f_tail(F, q, freedom),
-                     .drop = q * F},
+                     .drop = d.dot(score.information * d)},
          .group = g,
          .vehicle = asked.vehicles[i]});
   }
@@ -288,20 +293,24 @@ void Recipe::test_vehicles(std::size_t g, const VehicleScores& asked,
 std::optional<Tested> Recipe::test_differences(std::size_t g, const VehicleScores& asked) const {
   const Group& group = scores_.groups()[g];
   const auto q = static_cast<Index>(group.columns.size());
-  const std::size_t count = asked.vehicles.size();
-  const double within =
-      std::accumulate(asked.scores.begin(), asked.scores.end(), 0.0,
-                      [](double sum, const VehicleScore& score) { return sum + score.freedom; });
+  std::vector<VehicleScore> scores;  // of vehicles whose flights show how they scatter
+  double within = 0.0;
+  for (const VehicleScore& score : asked.scores) {
+    if (!(score.freedom > 0.0)) continue;
+    within += score.freedom;
+    scores.push_back(score);
+  }
+  const std::size_t count = scores.size();
   if (count < 3 || within < 1.0) return std::nullopt;
   MatrixXd information = MatrixXd::Zero(q, q);
   VectorXd sum = VectorXd::Zero(q);
-  for (const VehicleScore& score : asked.scores) {
+  for (const VehicleScore& score : scores) {
     information += score.information;
     sum += score.information * score.estimate;
   }
   const VectorXd mean = information.ldlt().solve(sum);
   double Q = 0.0;
-  for (const VehicleScore& score : asked.scores) {
+  for (const VehicleScore& score : scores) {
     const VectorXd d = score.estimate - mean;
     Q += d.dot(score.information * d);
   }
@@ -311,14 +320,14 @@ std::optional<Tested> Recipe::test_differences(std::size_t g, const VehicleScore
       .finding = {.cause = FleetCause::differs,
                   .effect = group.effect,
                   .log10_p = numerics::log10_f_tail(F, between, static_cast<double>(q) * within),
-                  .drop = Q / asked.pooled() - between},
+                  .drop = Q - between * asked.pooled()},
       .group = g};
   VectorXd means(q);
   VectorXd errors(q);
   for (Index k = 0; k < q; ++k) {
     std::vector<double> estimates;
     std::vector<double> variances;
-    for (const VehicleScore& score : asked.scores) {
+    for (const VehicleScore& score : scores) {
       estimates.push_back(score.estimate[k]);
       variances.push_back(score.information.inverse()(k, k) * asked.pooled());
     }
@@ -507,25 +516,39 @@ int order_of(FleetCause cause) {
 }
 
 /// Of what was found that of the first cause which takes most; of those that take as much, -2 ln L
-/// within 9.2, one that can be the cause where it is.
-const Tested* choose(const std::vector<Tested>& tested) {
+/// within 9.2, one that can be the cause where it is. A vehicle that is found by any candidate has
+/// the one that takes most in it, as sure as the surest.
+std::optional<Tested> choose(const std::vector<Tested>& tested) {
   const Tested* best = nullptr;
-  const auto comes_first = [](const Tested& one, const Tested& other) {
-    const int order = order_of(one.finding.cause) - order_of(other.finding.cause);
-    return order < 0 || (order == 0 && one.finding.drop > other.finding.drop);
+  for (const Tested& one : tested) {
+    if (!one.finding.found) continue;
+    const int order =
+        best == nullptr ? -1 : order_of(one.finding.cause) - order_of(best->finding.cause);
+    if (order < 0 || (order == 0 && one.finding.drop > best->finding.drop)) best = &one;
+  }
+  if (best == nullptr) return std::nullopt;
+  const bool is_of_one = best->finding.cause == FleetCause::one_vehicle;
+  const auto competes = [&](const Tested& one) {
+    if (order_of(one.finding.cause) != order_of(best->finding.cause)) return false;
+    return is_of_one ? one.vehicle == best->vehicle : one.finding.found;
   };
+  const Tested* most = best;
   for (const Tested& one : tested) {
-    if (one.finding.found && (best == nullptr || comes_first(one, *best))) best = &one;
+    if (competes(one) && one.finding.drop > most->finding.drop) most = &one;
   }
-  if (best == nullptr || !best->finding.stands_in) return best;
-  const Tested* chosen = best;
+  const Tested* chosen = most;
   for (const Tested& one : tested) {
-    const bool is_as_good = one.finding.found && !one.finding.stands_in &&
-                            order_of(one.finding.cause) == order_of(best->finding.cause) &&
-                            one.finding.drop > best->finding.drop - as_much;
-    if (is_as_good && (chosen == best || one.finding.drop > chosen->finding.drop)) chosen = &one;
+    const bool is_as_good =
+        competes(one) && !one.finding.stands_in && one.finding.drop > most->finding.drop - as_much;
+    if (is_as_good && (chosen->finding.stands_in || one.finding.drop > chosen->finding.drop)) {
+      chosen = &one;
+    }
   }
-  return chosen;
+  Tested result = *chosen;
+  result.finding.found = true;
+  result.finding.log10_p = std::min(result.finding.log10_p, best->finding.log10_p);
+  result.finding.p_adjusted = std::min(result.finding.p_adjusted, best->finding.p_adjusted);
+  return result;
 }
 
 FleetDiagnosis Recipe::run() {
@@ -551,8 +574,8 @@ FleetDiagnosis Recipe::run() {
   for (;;) {
     tested = test_all();
     if (result_.tests == 0) result_.tests = tested.size();
-    const Tested* best = choose(tested);
-    if (best == nullptr) break;
+    const std::optional<Tested> best = choose(tested);
+    if (!best) break;
     if (static_cast<int>(result_.found.size()) == options_.most) {
       result_.notes.push_back(
           "more is significant than was added; what is last found is least sure");

@@ -45,7 +45,8 @@ Moderation moderate(const std::vector<double>& inflations, const std::vector<dou
   }
   double prior_freedom = infinity;
   double prior = 1.0;
-  if (weight > 0.0) {
+  moderation.is_known = weight > 0.0;
+  if (moderation.is_known) {
     moderation.pooled = sum / weight;
     prior = moderation.pooled;
   }

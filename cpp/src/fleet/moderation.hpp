@@ -10,6 +10,7 @@
 namespace sepcal::fleet {
 
 struct Moderation {
+  bool is_known = false;           // whether any unit shows its scatter
   double pooled = 1.0;             // of all units, weighted by their degrees of freedom
   std::vector<double> inflations;  // of each, moderated: at least 1, what noise models say
   std::vector<double> freedoms;    // infinite where nothing tells the units apart

@@ -8,6 +8,7 @@
 
 #include "diagnosis/projection.hpp"
 #include "numerics/decompositions.hpp"
+#include "sepcal/error.hpp"
 
 namespace sepcal::fleet {
 
@@ -24,6 +25,10 @@ std::map<std::string, double> attribute_means(const std::vector<FleetFlight>& fl
   std::map<std::string, std::pair<double, double>> sums;
   for (const FleetFlight& flight : flights) {
     for (const auto& [name, value] : flight.attributes) {
+      if (!std::isfinite(value)) {
+        throw Error("flight '" + flight.name + "': its attribute '" + name +
+                    "' is no finite number");
+      }
       sums[name].first += value;
       sums[name].second += 1.0;
     }
@@ -172,14 +177,22 @@ VehicleScore Scores::of_vehicle(std::size_t v, const std::vector<Index>& columns
   VectorXd score = vehicle.score(columns);
   if (!accepted.empty()) score -= vehicle.information(columns, accepted) * known;
   result.estimate = inverse * score;
-  const auto n = static_cast<double>(vehicle.flights.size());
-  if (vehicle.flights.size() < 3) return result;
+  // Flights that have the columns; one that has them alone can't be left out.
+  std::vector<const Part*> telling;
+  for (const Part& part : vehicle.flights) {
+    const double share = (part.G(Eigen::all, columns) * inverse_root).squaredNorm();
+    if (share > 1e-6) telling.push_back(&part);
+    if (share > static_cast<double>(q) - 1e-6) return result;
+  }
+  const auto n = static_cast<double>(telling.size());
+  if (telling.size() < 3) return result;
   // Leaving a flight out moves the estimate by I^-1 G'(1 - H)^-1 e, H the flight's share of the
   // projector on all that the vehicle estimates, [Q | G I^-1/2].
   double sum = 0.0;
   VectorXd mean = VectorXd::Zero(q);
   std::vector<VectorXd> moves;
-  for (const Part& part : vehicle.flights) {
+  for (const Part* const one : telling) {
+    const Part& part = *one;
     const MatrixXd G = part.G(Eigen::all, columns) * inverse_root;
     VectorXd e = part.r - part.G(Eigen::all, columns) * result.estimate;
     if (!accepted.empty()) e -= part.G(Eigen::all, accepted) * known;

@@ -93,7 +93,7 @@ def sentence_of(finding: _core.FleetFinding) -> str:
             size += f", spread {finding.spread[place]:.2g}"
         sizes.append(in_line(size))
     sentence = (
-        f"{in_line(finding.effect)}, {where} (p {_probability(finding.p_adjusted)}): "
+        f"{in_line(finding.effect)}, {where} (p {in_short(finding.p_adjusted)}): "
         + "; ".join(sizes)
     )
     if finding.as_good:
@@ -101,7 +101,8 @@ def sentence_of(finding: _core.FleetFinding) -> str:
     return sentence
 
 
-def _probability(p: float) -> str:
+def in_short(p: float) -> str:
+    """A probability as pages show it."""
     return "below 1e-15" if p < 1e-15 else f"{p:.2g}"
 
 

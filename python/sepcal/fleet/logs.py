@@ -225,9 +225,13 @@ def _describe(files: Sequence[str], told: Sequence[dict[str, str]]) -> list[Log]
 
 
 def _short_names(files: Sequence[str]) -> list[str]:
-    """The files' names without their folder, or whole where two are alike."""
-    last = [file.rpartition("/")[2] for file in files]
-    return last if len(set(last)) == len(last) else list(files)
+    """The ends of the files' paths, with as many folders as tell them apart."""
+    parts = [file.split("/") for file in files]
+    for count in range(1, max(map(len, parts))):
+        names = ["/".join(part[-count:]) for part in parts]
+        if len(set(names)) == len(names):
+            return names
+    return list(files)
 
 
 def _numeric(told: Sequence[Mapping[str, str]]) -> list[str]:

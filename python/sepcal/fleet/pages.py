@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sepcal.fleet.passes import vehicle_error
 from sepcal.printing import aligned, in_line
 
 if TYPE_CHECKING:
     from sepcal.fleet.fleet import Fleet
 
 MOST_VEHICLES = 40
+MOST_COLUMNS = 5  # of parameters
 
 
 def fleet_page(fleet: Fleet) -> str:
     """Vehicles with their parameters, what was left out, and what effects did."""
-    from sepcal.fleet.passes import vehicle_error
-
     vehicles = fleet.vehicles
     flights = fleet.flights
     misfit = float(np.median([flight.misfit for flight in flights.values()]))
@@ -28,6 +28,8 @@ def fleet_page(fleet: Fleet) -> str:
         f"Misfit per reading of a typical flight, of noise alone 1: {misfit:.3g}.",
         "",
     ]
+    if len(fleet.parameters) > MOST_COLUMNS:
+        return "\n".join([*lines, *_by_parameter(fleet), *_rest(fleet)])
     rows = [["vehicle", "flights", *fleet.parameters]]
     for name, fit in list(vehicles.items())[:MOST_VEHICLES]:
         cells = []
@@ -39,6 +41,37 @@ def fleet_page(fleet: Fleet) -> str:
     lines += aligned(rows)
     if len(vehicles) > MOST_VEHICLES:
         lines.append(f"... and {len(vehicles) - MOST_VEHICLES} more")
+    return "\n".join([*lines, *_rest(fleet)])
+
+
+def _by_parameter(fleet: Fleet) -> list[str]:
+    """Too many for a column each: a row each, over all vehicles."""
+    rows = [["parameter", "median", "smallest", "largest", "its vehicle", "typical error"]]
+    fits = list(fleet.vehicles.values())
+    for k, name in enumerate(fleet.parameters):
+        values = np.array([fit.values[k] for fit in fits])
+        known = np.flatnonzero(np.isfinite(values))
+        if not known.size:
+            rows.append([name, "not told", "", "", "", ""])
+            continue
+        errors = [vehicle_error(fits[i], k) for i in known]
+        largest = known[np.argmax(values[known])]
+        rows.append(
+            [
+                name,
+                f"{np.median(values[known]):.5g}",
+                f"{values[known].min():.5g}",
+                f"{values[largest]:.5g}",
+                in_line(fits[largest].vehicle),
+                f"{np.median(errors):.2g}",
+            ]
+        )
+    return aligned(rows)
+
+
+def _rest(fleet: Fleet) -> list[str]:
+    """What effects did, and what was left out."""
+    lines: list[str] = []
     for step in fleet.added:
         lines += [
             "",
@@ -51,4 +84,4 @@ def fleet_page(fleet: Fleet) -> str:
             f"  {in_line(name)}: {in_line(reason)}"
             for name, reason in list(fleet.left_out.items())[:5]
         ]
-    return "\n".join(lines)
+    return lines

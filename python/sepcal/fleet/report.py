@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sepcal.fleet.findings import FleetDiagnosis, sentence_of
+from sepcal.fleet.findings import FleetDiagnosis, in_short, sentence_of
 from sepcal.fleet.fleet import Fleet
 from sepcal.fleet.monitoring import Monitoring
 from sepcal.fleet.passes import vehicle_error
@@ -79,7 +79,12 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> Html:
 
 def _missing(found: FleetDiagnosis) -> Section:
     rows = [
-        [one.effect, one.vehicle or one.cause, f"{one.p_adjusted:.1e}", f"{one.drop:.3g}"]
+        [
+            one.effect,
+            one.vehicle or one.cause,
+            in_short(one.p_adjusted),
+            f"{one.drop:.3g}",
+        ]
         for one in (*found.found, *found.others[:8])
     ]
     lead = (
