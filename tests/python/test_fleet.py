@@ -338,13 +338,18 @@ def test_names_and_tables(folder: Path, tmp_path: Path) -> None:
         "file,vehicle,operator,hours\n"
         + "".join(f"{file.name},{file.name[:2]},A,{k}\n" for k, file in enumerate(folder.iterdir()))
     )
-    logs = fleet_logs.find_logs(folder, None, table)
+    logs, misnamed = fleet_logs.find_logs(folder, None, table)
+    assert misnamed == {}
     assert {log.vehicle for log in logs} == set(SCALES)
     assert all(set(log.attributes) == {"hours"} for log in logs)
     assert logs[0].labels == {"operator": "A"}
+    logs, misnamed = fleet_logs.find_logs(folder, "V1_{date}.csv")
+    assert (len(logs), len(misnamed)) == (3, 9)
+    with pytest.raises(sepcal.Error, match="no parameter is called 'w_x'; there are: s_va"):
+        len(sepcal.Fleet(folder, sepcal.PitotStatic(), names=NAMES, own=["w_x"]).flights)
     with pytest.raises(sepcal.Error, match="no log is called"):
         fleet_logs.find_logs(str(folder / "*.ulg"))
-    with pytest.raises(sepcal.Error, match=r"does not fit names='\{vehicle\}-x\.csv'"):
+    with pytest.raises(sepcal.Error, match=r"its name does not fit '\{vehicle\}-x\.csv'"):
         fleet_logs.find_logs(folder, "{vehicle}-x.csv")
     with pytest.raises(sepcal.Error, match=r"has no \{field\}"):
         fleet_logs.find_logs(folder, "*.csv")

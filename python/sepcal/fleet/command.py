@@ -63,7 +63,11 @@ def add_to(commands: Verbs[argparse.ArgumentParser]) -> None:
     verb = _add(verbs, "diagnose", _diagnose, "which effect is missing, everywhere or in a vehicle")
     _add_folder(verb)
     verb.add_argument(
-        "--significance", type=float, default=0.01, metavar="P", help="of the fleet [0.01]"
+        "--significance",
+        type=float,
+        default=0.01,
+        metavar="P",
+        help="share of sound fleets in which something may be found [0.01]",
     )
     verb = _add(verbs, "add", _add_effect, "the fleet with one more effect in every flight")
     _add_folder(verb)
@@ -80,11 +84,15 @@ def add_to(commands: Verbs[argparse.ArgumentParser]) -> None:
     verb = _add(verbs, "monitor", _monitor, "parameters in time: limits, changes, who departs")
     _add_folder(verb)
     verb.add_argument(
-        "--significance", type=float, default=0.01, metavar="P", help="of the fleet [0.01]"
+        "--significance",
+        type=float,
+        default=0.01,
+        metavar="P",
+        help="share of sound fleets in which something may be found [0.01]",
     )
     verb = _add(verbs, "report", _report, "one page of all of these")
     _add_folder(verb)
-    verb.add_argument("-o", "--output", metavar="FLEET.html", default="fleet.html")
+    verb.add_argument("-o", "--output", metavar="FLEET.html", help="[the folder's name and .html]")
 
 
 def _add(
@@ -220,7 +228,8 @@ def _monitor(given: argparse.Namespace) -> int:
 def _report(given: argparse.Namespace) -> int:
     from sepcal.fleet.report import fleet_report
 
-    refuse_outputs((given.output,), ())
-    write_whole({given.output: fleet_report(_opened(given))})
-    show(given.output)
+    output = given.output or f"{given.folder.rstrip('/')}.html"
+    refuse_outputs((output,), ())
+    write_whole({output: fleet_report(_opened(given))})
+    show(output)
     return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sepcal.fleet.passes import FleetFlight
 
 GROUPS = 5  # of a number, of as many flights each
-FAILS_FROM = 1.5  # times the fleet's median misfit
+FAILS_FROM = 1.2  # times the median error of all groups
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Group:
     misfit: float  # -2 ln L per reading; 1: noise alone
     worst: str  # its flight that fits worst
     worst_misfit: float
-    fails: bool  # whether it is far above the fleet's median
+    fails: bool  # whether its error is far above the groups' median
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,8 @@ class FleetComparison:
             [
                 in_line(group.name),
                 str(group.flights),
-                f"{group.rmse:.4g}",
-                f"{group.misfit:.3g}" + (" *" if group.fails else ""),
+                f"{group.rmse:.4g}" + (" *" if group.fails else ""),
+                f"{group.misfit:.3g}",
                 in_line(group.worst),
                 f"{group.worst_misfit:.3g}",
             ]
@@ -77,12 +77,13 @@ class FleetComparison:
         ]
         failing = [group.name for group in self.groups if group.fails]
         lines = [
-            f"By {self.by}. Misfit is -2 ln L per reading, of noise alone 1; "
-            f"a typical flight has {self.median:.3g}."
+            f"By {self.by}. rmse is the error that is left. Misfit is -2 ln L per reading, against "
+            f"the noise that each flight shows; a typical flight has {self.median:.3g}."
         ]
         if failing:
             lines.append(
-                f"{len(failing)} of {len(self.groups)} (*) have more than {FAILS_FROM} times that."
+                f"{len(failing)} of {len(self.groups)} (*) have an error of more than {FAILS_FROM} "
+                "times the median."
             )
         return "\n".join([*lines, "", *aligned(rows)])
 
@@ -108,11 +109,13 @@ def compare_groups(flights: Sequence[FleetFlight], by: str) -> FleetComparison:
                 misfit,
                 worst.log.name,
                 float(misfits.max()),
-                misfit > FAILS_FROM * median,
+                False,
             )
         )
+    usual = float(np.median([group.rmse for group in groups]))
+    groups = [replace(group, fails=group.rmse > FAILS_FROM * usual) for group in groups]
     if by in ("flight", "vehicle"):
-        groups.sort(key=lambda group: -group.misfit)
+        groups.sort(key=lambda group: -group.rmse)
     return FleetComparison(by, tuple(groups), median)
 
 

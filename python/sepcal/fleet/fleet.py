@@ -94,7 +94,7 @@ class Fleet:
         Raises:
             Error: No log; a name that does not fit; a log that the table lacks.
         """
-        self.logs = find_logs(logs, names, table, share)
+        self.logs, self._misnamed = find_logs(logs, names, table, share)
         self._like = like
         self._options = options
         self._own = None if own is None else tuple(to_names("own", own))
@@ -150,6 +150,7 @@ class Fleet:
             )
             fleet = cls.__new__(cls)
             fleet.logs = [Log(**one) for one in told["logs"]]
+            fleet._misnamed = dict(told["misnamed"])
             fleet._like = fleet._base = base
             fleet._options = {}
             fleet._own = tuple(told["own"])
@@ -157,7 +158,10 @@ class Fleet:
             fleet._way = Way(cluster, Store(folder), None, float(told["tolerance"]))
             fleet.added = list(told["added"])
         except OSError as error:
-            raise _core.Error(f"{in_line(place)}: {error.strerror}") from None
+            raise _core.Error(
+                f"{in_line(place)}: {error.strerror}; sepcal fleet fit ... -o {in_line(folder)} "
+                "makes a fleet there"
+            ) from None
         except (ValueError, KeyError, TypeError) as error:
             if isinstance(error, _core.Error):
                 raise
@@ -179,6 +183,12 @@ class Fleet:
     def own(self) -> tuple[str, ...]:
         """Parameters that each flight has for itself."""
         if self._own is not None:
+            unknown = [name for name in self._own if name not in self.base.names]
+            if unknown:
+                raise _core.Error(
+                    f"own: no parameter is called '{in_line(unknown[0])}'; there are: "
+                    + ", ".join(self.base.names)
+                )
             return self._own
         return tuple(name for name in self.base.names if name in ("w_n", "w_e", "w_d"))
 
@@ -187,6 +197,7 @@ class Fleet:
         """What came of the logs, which are visited when it is first asked for."""
         if self._fitted is None:
             self._fitted = fit_flights(self.logs, self.base, self.own, self._candidates, self._way)
+            self._fitted.left_out |= self._misnamed
         return self._fitted
 
     @property
@@ -249,6 +260,7 @@ class Fleet:
             >>> fleet.diagnose().found
             []
         """
+        _check_significance(significance)
         return FleetDiagnosis(_core.diagnose_fleet(self._asked(), significance, most))
 
     def add(self, effect: str | Effect, *, store: str | os.PathLike[str] | None = None) -> Fleet:
@@ -319,6 +331,7 @@ class Fleet:
             >>> fleet.monitor().changes
             ()
         """
+        _check_significance(significance)
         return watch(list(self.flights.values()), self.parameters, significance)
 
     # How it is done
@@ -382,6 +395,12 @@ class Fleet:
         from sepcal.fleet.pages import fleet_page
 
         return fleet_page(self)
+
+
+def _check_significance(significance: float) -> None:
+    """Raises Error for what is no probability."""
+    if not 0.0 < significance < 1.0:
+        raise _core.Error(f"significance={significance}: give a probability between 0 and 1")
 
 
 def about_centres(calibration: Calibration, centres: Mapping[str, float]) -> Calibration:

@@ -68,6 +68,7 @@ def write_files(fleet: Fleet, folder: str | os.PathLike[str]) -> None:
         "schema": SCHEMA,
         "kind": "fleet",
         "logs": [as_json(log) for log in fleet.logs],
+        "misnamed": fleet._misnamed,
         "base": json.loads(fleet.base.to_json()),
         "own": list(fleet.own),
         "candidates": None if fleet._candidates is None else list(fleet._candidates),

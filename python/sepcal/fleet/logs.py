@@ -146,14 +146,16 @@ def find_logs(
     names: str | None = None,
     table: str | os.PathLike[str] | None = None,
     share: str = "vehicle",
-) -> list[Log]:
+) -> tuple[list[Log], dict[str, str]]:
     """The logs with what names and the table say of them.
 
     A file of the table is one of `logs` by its path or its name; without `logs` the table's files
     are the logs, relative to the table. `share` is the field or column whose logs share parameters;
     without `vehicle` the folder is the vehicle.
 
-    Raises Error for no log, for a name that does not fit, and for a log that the table lacks.
+    Logs whose names do not fit, or whose date is none, are left out: the second of both.
+
+    Raises Error where none is left, and for a log that the table lacks.
     """
     rows = read_table(table) if table is not None else []
     if logs is None:
@@ -170,22 +172,32 @@ def find_logs(
         known = _rows_by_file(files, rows, table)
     pattern = compile_names(names) if names is not None else None
     told: list[dict[str, str]] = []
+    named: list[str] = []
+    misnamed: dict[str, str] = {}  # and why they are left out
     for file in files:
         labels = {key: value for key, value in known.get(file, {}).items() if key != "file"}
         if pattern is not None:
             match = pattern.fullmatch(file)
             if match is None:
-                raise _core.Error(f"{in_line(file)} does not fit names={in_line(names or '')!r}")
+                misnamed[file] = f"its name does not fit {in_line(names or '')!r}"
+                continue
             labels |= match.groupdict()
+        if labels.get("date") and read_date(labels["date"]) is None:
+            misnamed[file] = f"'{in_line(labels['date'])}' is no date"
+            continue
         told.append(labels)
+        named.append(file)
+    if not named:
+        file, reason = next(iter(misnamed.items()))
+        raise _core.Error(f"no log can be used; of {in_line(file)}: {reason}")
     if share != "vehicle":
-        lacking = [file for file, labels in zip(files, told, strict=True) if not labels.get(share)]
+        lacking = [file for file, labels in zip(named, told, strict=True) if not labels.get(share)]
         if lacking:
             raise _core.Error(
                 f"{in_line(lacking[0])} has no '{in_line(share)}', which is to share parameters"
             )
         told = [labels | {"vehicle": labels[share]} for labels in told]
-    return _describe(files, told)
+    return _describe(named, told), misnamed
 
 
 def _rows_by_file(

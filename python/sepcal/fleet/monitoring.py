@@ -122,8 +122,8 @@ class Monitoring:
         if names:
             lines.append(f"Vehicles that depart from the others: {', '.join(map(in_line, names))}.")
         else:
-            lines.append("No vehicle departs from the others.")
-        rows = [["vehicle", "parameter", "value", "others", "distance"]]
+            lines.append(f"No vehicle departs from the others (p below {self.significance:g}).")
+        rows = [["vehicle", "parameter", "value", "others", "distance", "p"]]
         rows += [
             [
                 in_line(one.vehicle),
@@ -131,6 +131,7 @@ class Monitoring:
                 f"{one.value:.5g}",
                 f"{one.others:.5g}",
                 f"{one.errors:.2g} s.d.",
+                f"{one.p_adjusted:.2g}",
             ]
             for one in self.departures[:10]
         ]

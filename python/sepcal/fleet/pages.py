@@ -28,6 +28,10 @@ def fleet_page(fleet: Fleet) -> str:
         f"Misfit per reading of a typical flight, of noise alone 1: {misfit:.3g}.",
         "",
     ]
+    if len(vehicles) == 1:
+        lines.insert(
+            2, "One vehicle: tell vehicles apart by a field {vehicle} of --names, or by folders."
+        )
     if len(fleet.parameters) > MOST_COLUMNS:
         return "\n".join([*lines, *_by_parameter(fleet), *_rest(fleet)])
     rows = [["vehicle", "flights", *fleet.parameters]]

@@ -80,6 +80,8 @@ def fit_flights(
     asked = {log.name: Question(base, kind, own, log.name, log.file, candidates) for log in logs}
     _take(logs, _visit(asked, "calibrating each flight", way, fitted), fitted)
     named = sorted({effect for one in fitted.flights.values() for effect, *_ in one.factor.columns})
+    if candidates and (unknown := [name for name in candidates if name not in named]):
+        raise _core.Error(f"no flight can show the effect '{in_line(unknown[0])}'")
     centres = mean_centres(fitted.flights)
     for _ in range(MOST_PASSES):
         values = _vehicle_values(fitted.flights)
