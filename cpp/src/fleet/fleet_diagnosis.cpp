@@ -577,7 +577,7 @@ FleetDiagnosis Recipe::run() {
     const std::optional<Tested> best = choose(tested);
     if (!best) break;
     if (static_cast<int>(result_.found.size()) == options_.most) {
-      result_.notes.push_back(
+      result_.notes.emplace_back(
           "more is significant than was added; what is last found is least sure");
       break;
     }

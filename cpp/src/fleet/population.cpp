@@ -54,10 +54,10 @@ AtSpread evaluate(const std::vector<VehicleData>& vehicles, const MatrixXd& S) {
     A += at.B.back();
     sum += weighted.back().transpose() * vehicle.q;
   }
-  const Eigen::LLT<MatrixXd> of_A(A);
-  at.log_likelihood -= MatrixXd(of_A.matrixL()).diagonal().array().log().sum();
-  at.mean = of_A.solve(sum);
-  at.mean_covariance = of_A.solve(MatrixXd::Identity(p, p));
+  const Eigen::LLT<MatrixXd> sum_factor(A);
+  at.log_likelihood -= MatrixXd(sum_factor.matrixL()).diagonal().array().log().sum();
+  at.mean = sum_factor.solve(sum);
+  at.mean_covariance = sum_factor.solve(MatrixXd::Identity(p, p));
   at.gradient = MatrixXd::Zero(p, p);
   for (std::size_t v = 0; v < vehicles.size(); ++v) {
     const VectorXd e = vehicles[v].q - vehicles[v].R * at.mean;

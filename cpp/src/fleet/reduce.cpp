@@ -158,7 +158,9 @@ FlightFactor reduce(const DiagnosedFit& fitted, const ReduceOptions& options) {
   const RowLayout& layout = visit.room().fit().layout;
 
   Index readings = -own;
-  for (const Whitener& whitener : noise->whiteners) readings += whitener.informative_rows();
+  if (noise) {
+    for (const Whitener& whitener : noise->whiteners) readings += whitener.informative_rows();
+  }
   FlightFactor reduced{.triangle = factor.matrix().bottomRightCorner(below, below),
                        .readings = static_cast<double>(readings),
                        .rmse = total_rmse(layout, visit.room().fit().residual)};

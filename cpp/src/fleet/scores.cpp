@@ -40,13 +40,14 @@ std::map<std::string, double> attribute_means(const std::vector<FleetFlight>& fl
 
 }  // namespace
 
-Scores::Scores(const std::vector<FleetFlight>& flights) : count_(flights.size()) {
+Scores::Scores(const std::vector<FleetFlight>& flights)
+    : parameters_(flights.empty() ? 0 : flights.front().factor.values.size()),
+      count_(flights.size()) {
   for (Vehicle& vehicle : group_vehicles(flights)) {
     vehicles_.push_back({.of = std::move(vehicle)});
   }
   find_groups(flights);
   const std::map<std::string, double> means = attribute_means(flights);
-  parameters_ = flights.front().factor.values.size();
   const auto c = static_cast<Index>(columns_.size());
   norms_ = VectorXd::Zero(c);
   for (Rows& vehicle : vehicles_) {
