@@ -26,6 +26,7 @@ inline constexpr std::array commands{
     Command{"aircraft", CommandKind::instrument, "VERB",
             "flight paths and aerodynamic coefficients"},
     Command{"model", CommandKind::python, "VERB", "a model of your own, a class of Python"},
+    Command{"fleet", CommandKind::python, "VERB", "many flights of many vehicles"},
     Command{"check", CommandKind::file, "FILE", "says what a log is, and whose it may be"},
     Command{"join", CommandKind::file, "MEASURED OTHER", "brings logs of two rates into one"},
     Command{"completion", CommandKind::file, "SHELL", "prints completions for bash, zsh or fish"},

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sepcal import _core
+from sepcal.fleet.store import factor_of
 
 Array = NDArray[np.float64]
 Asked = tuple[str, str, _core.FlightFactor, dict[str, float]]
@@ -23,20 +24,19 @@ def make_factor(
     triangle = np.zeros((side, side))
     triangle[: len(upper)] = upper
     names = list(effects) or [f"e{k}" for k in range(G.shape[1])]
-    fields = {
-        "parameters": [f"p{k}" for k in range(J.shape[1])],
-        "units": ["m"] * J.shape[1],
-        "values": values,
-        "columns": [(name, name, "m", False) for name in names],
-        "triangle": triangle,
-        "readings": float(len(residual)),
-        "own": {},
-        "centres": {},
-        "rmse": 1.0,
-    }
-    factor: _core.FlightFactor = _core.FlightFactor.__new__(_core.FlightFactor)
-    factor.__setstate__(tuple(fields[name] for name in _core.FlightFactor._fields))
-    return factor
+    return factor_of(
+        {
+            "parameters": [f"p{k}" for k in range(J.shape[1])],
+            "units": ["m"] * J.shape[1],
+            "values": values,
+            "columns": [(name, name, "m", False) for name in names],
+            "triangle": triangle,
+            "readings": float(len(residual)),
+            "own": {},
+            "centres": {},
+            "rmse": 1.0,
+        }
+    )
 
 
 def draw_fleet(

@@ -23,6 +23,7 @@ from scipy.stats import norm
 
 import sepcal
 from sepcal import _core
+from sepcal.fleet.store import factor_of
 from studies.study import Finding, Outcome, Progress, Study, seed_range, seeds
 from studies.trust.noises import gauss_markov
 
@@ -146,9 +147,7 @@ def draw(
                 hidden[in_vehicles[0]] = in_vehicles[1]
             for effect, size in hidden.items():
                 T[:, -1] += size * T[:, pool.columns(effect)[0]]
-            made = _core.FlightFactor.__new__(_core.FlightFactor)
-            state = dict(factor._asdict()) | {"triangle": T}
-            made.__setstate__(tuple(state[name] for name in _core.FlightFactor._fields))
+            made = factor_of(dict(factor._asdict()) | {"triangle": T})
             name = f"{vehicle}-{number}"
             fleet.append((name, f"v{vehicle:02d}", made, {"age_days": age}))
     return fleet

@@ -50,7 +50,7 @@ def test_one_help(tmp_path: Path) -> None:
     assert native.returncode == python.returncode == 0
     assert native.stdout == python.stdout
     assert max(map(len, native.stdout.splitlines())) <= 80
-    for command in ("mag", "pitot", "aircraft", "model", "check", "log", "report", "validate"):
+    for command in ("mag", "pitot", "aircraft", "model", "fleet", "log", "report", "validate"):
         assert f"\n  {command} " in native.stdout
 
 
@@ -112,7 +112,7 @@ def test_check_of_no_sensor(command: list[str], tmp_path: Path) -> None:
 
 def test_what_the_native_command_lacks(tmp_path: Path) -> None:
     """One line that says how to get it."""
-    for word in ("model", "log", "report", "field", "validate"):
+    for word in ("model", "fleet", "log", "report", "field", "validate"):
         told = call(NATIVE, word, folder=tmp_path)
         assert (told.returncode, told.stdout) == (2, "")
         assert told.stderr == (

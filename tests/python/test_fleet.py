@@ -23,6 +23,7 @@ from scipy.optimize import least_squares
 import sepcal
 from sepcal import _core
 from sepcal.fleet import logs as fleet_logs
+from sepcal.fleet.report import fleet_report
 
 SCALES = {"V1": 0.95, "V2": 0.97, "V3": 0.93, "V4": 0.95}
 DAYS = ("2026-01-10", "2026-02-10", "2026-03-10")
@@ -382,6 +383,11 @@ def test_a_change_and_a_departure_ring(tmp_path: Path) -> None:
     assert watched.exit_code == 3
     assert "V5" in str(watched)
     assert json.loads(watched.to_json())["alarm"] is True
+    # Too few vehicles to say who departs, and one that changes: the page has it.
+    two = [str(tmp_path / f"{vehicle}_*.csv") for vehicle in ("V4", "V5")]
+    few = sepcal.Fleet(two, sepcal.PitotStatic(), names=NAMES)
+    assert few.monitor().departures == ()
+    assert "V5: s_va changes" in fleet_report(few)
 
 
 def test_factors_are_whitened_by_the_flights_own_noise(fleet: sepcal.Fleet) -> None:

@@ -146,12 +146,12 @@ struct FlightInnovations {
 
 /// Flights, wherever they are: in this process or behind a map over workers. One call visits all
 /// flights that it names; the answers are in the order of the questions.
-class Fleet {
+class FlightSource {
  public:
-  Fleet() = default;
-  Fleet(const Fleet&) = delete;
-  Fleet& operator=(const Fleet&) = delete;
-  virtual ~Fleet() = default;
+  FlightSource() = default;
+  FlightSource(const FlightSource&) = delete;
+  FlightSource& operator=(const FlightSource&) = delete;
+  virtual ~FlightSource() = default;
 
   virtual std::vector<std::string> names() const = 0;
 
@@ -168,7 +168,7 @@ class Fleet {
   virtual std::vector<Eigen::MatrixXd> score_covariances(
       const std::vector<ScoreQuestion>& questions) = 0;
 
-  /// By filter error, for each point. A fleet that doesn't answer throws Error.
+  /// By filter error, for each point. A source that doesn't answer throws Error.
   virtual std::vector<FlightScore> scores(const std::vector<FlightPoint>& points);
   virtual std::vector<FlightInnovations> innovations(const std::vector<FlightPoint>& points);
   /// The factor of each of so many blocks of the flight, as long as each other.
@@ -176,7 +176,7 @@ class Fleet {
       const std::vector<FlightPoint>& points, const std::vector<int>& blocks);
 };
 
-/// One flight, prepared: what a Fleet's answers are made of.
+/// One flight, prepared: what a FlightSource's answers are made of.
 class FlightProblem {
  public:
   /// `model` must outlive it. Throws Error as fit() does.
@@ -199,10 +199,10 @@ class FlightProblem {
   std::unique_ptr<const Parts> parts_;
 };
 
-/// Fits `model` to all flights of a fleet. Throws Error for misuse: names that the model doesn't
+/// Fits `model` to all flights of a source. Throws Error for misuse: names that the model doesn't
 /// have, nothing shared, flights of one name or none, a loss; for flights that can't be used unless
-/// they are left out; and what the fleet throws.
-ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& options);
+/// they are left out; and what the source throws.
+ManyFit fit_many(const BlockModel& model, FlightSource& source, const ManyOptions& options);
 
 /// The same on records in memory, on ManyOptions::fit.threads threads.
 ManyFit fit_many(const BlockModel& model, std::vector<std::pair<std::string, Record>> flights,

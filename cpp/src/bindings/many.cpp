@@ -142,9 +142,9 @@ MatrixXd score_blocks(const PreparedFlight& flight, const std::tuple<VectorXd, i
 }
 
 /// Asks `visit(kind, [(flight, argument), ...])`, which answers with a list in that order.
-class MappedFleet final : public Fleet {
+class MappedFlights final : public FlightSource {
  public:
-  MappedFleet(std::vector<std::string> names, py::function visit)
+  MappedFlights(std::vector<std::string> names, py::function visit)
       : names_(std::move(names)), visit_(std::move(visit)) {}
 
   std::vector<std::string> names() const override { return names_; }
@@ -276,10 +276,10 @@ std::string largest(const Departure& departure) {
 ManyFit fit_mapped(const Model& model, const std::vector<std::string>& names,
                    const CalibrationOptions& options, const std::vector<std::string>& own,
                    bool leave_out, const py::function& visit) {
-  MappedFleet fleet(names, visit);
+  MappedFlights source(names, visit);
   const ManyOptions many = many_options(model, options, own, leave_out);
   const Released released;
-  return fit_many(*model.block, fleet, many);
+  return fit_many(*model.block, source, many);
 }
 
 void define_results_of_many(py::module_& module) {

@@ -43,6 +43,11 @@ struct Tested {
   std::size_t vehicle = 0;  // of one
 };
 
+/// Whether one coefficient is the whole fleet's.
+bool is_of_fleet(const FleetFinding& finding) {
+  return finding.cause == FleetCause::everywhere || finding.cause == FleetCause::grows;
+}
+
 /// Information and score of each unit whose estimates are compared: vehicles, or flights.
 struct Units {
   std::vector<MatrixXd> information;
@@ -87,6 +92,8 @@ class Recipe {
   void replace(const std::vector<std::size_t>& groups, std::size_t by);
   std::vector<std::string> as_good_as(std::size_t group) const;
   VectorXd mean_of(const Group& group) const;
+  std::vector<Index> places_of(const Group& group) const;
+  void forget(const std::string& effect);
   std::vector<Coefficient> coefficients(const Group& group, const VectorXd& estimate,
                                         const VectorXd& errors) const;
   double per_reading(double misfit) const { return misfit / readings_; }
@@ -184,12 +191,24 @@ bool Recipe::is_accepted(const Group& group) const {
 
 /// Of the group's coefficients: the fleet's where it has them, else none.
 VectorXd Recipe::mean_of(const Group& group) const {
-  VectorXd mean = VectorXd::Zero(std::ssize(group.columns));
-  for (std::size_t k = 0; k < group.columns.size(); ++k) {
-    const auto at = std::ranges::find(accepted_, group.columns[k]);
-    if (at != accepted_.end()) mean[static_cast<Index>(k)] = known_[at - accepted_.begin()];
+  if (!is_accepted(group)) return VectorXd::Zero(std::ssize(group.columns));
+  return known_(places_of(group));
+}
+
+/// Of an accepted group's columns, among those accepted.
+std::vector<Index> Recipe::places_of(const Group& group) const {
+  std::vector<Index> places;
+  for (const Index column : group.columns) {
+    places.push_back(std::ranges::find(accepted_, column) - accepted_.begin());
   }
-  return mean;
+  return places;
+}
+
+/// An effect that explains nothing more, of the fleet or of what differs.
+void Recipe::forget(const std::string& effect) {
+  std::erase_if(result_.found, [&](const FleetFinding& one) {
+    return one.effect == effect && one.cause != FleetCause::one_vehicle;
+  });
 }
 
 VehicleScores Recipe::ask_vehicles(const Group& group) const {
@@ -238,11 +257,11 @@ std::optional<Tested> Recipe::test_everywhere(std::size_t g, const VehicleScores
   std::iota(places.begin(), places.end(), std::ssize(accepted_));
   const VectorXd estimate = common->estimate.tail(q);
   const MatrixXd covariance = common->covariance.bottomRightCorner(q, q);
-  const MatrixXd plain = common->plain.bottomRightCorner(q, q) * vehicles.pooled();
-  const double drop = estimate.dot(plain.ldlt().solve(estimate)) * vehicles.pooled();
-  const double by_noise =
-      numerics::log10_chi_squared_tail(drop / vehicles.pooled(), static_cast<double>(q));
-  const VectorXd errors = covariance.diagonal().cwiseMax(plain.diagonal()).cwiseSqrt();
+  const MatrixXd plain = common->plain.bottomRightCorner(q, q);
+  const double drop = estimate.dot(plain.ldlt().solve(estimate));
+  const double pooled = vehicles.pooled();
+  const double by_noise = numerics::log10_chi_squared_tail(drop / pooled, static_cast<double>(q));
+  const VectorXd errors = covariance.diagonal().cwiseMax(pooled * plain.diagonal()).cwiseSqrt();
   return Tested{.finding = {.cause = group.cause,
                             .effect = group.effect,
                             .coefficients = coefficients(group, estimate, errors),
@@ -399,11 +418,7 @@ void Recipe::eliminate(double number) {
     double largest = std::log10(options_.significance / number);
     for (const Group& group : scores_.groups()) {
       if (!is_accepted(group)) continue;
-      std::vector<Index> places;
-      for (const Index column : group.columns) {
-        places.push_back(std::ranges::find(accepted_, column) - accepted_.begin());
-      }
-      const double log10_p = test_none(*common, places);
+      const double log10_p = test_none(*common, places_of(group));
       if (log10_p <= largest) continue;
       largest = log10_p;
       weakest = &group;
@@ -411,9 +426,7 @@ void Recipe::eliminate(double number) {
     if (weakest == nullptr) return;
     eliminated_.push_back(weakest->effect);
     for (const Index column : weakest->columns) std::erase(accepted_, column);
-    std::erase_if(result_.found, [&](const FleetFinding& one) {
-      return one.effect == weakest->effect && one.cause != FleetCause::one_vehicle;
-    });
+    forget(weakest->effect);
     estimate();
   }
 }
@@ -454,18 +467,14 @@ void Recipe::replace(const std::vector<std::size_t>& groups, std::size_t by) {
   const Group& group = scores_.groups()[by];
   FleetFinding* kept = nullptr;
   for (FleetFinding& one : result_.found) {
-    const bool is_of_fleet = one.cause == FleetCause::everywhere || one.cause == FleetCause::grows;
-    if (is_of_fleet && one.effect == scores_.groups()[groups.front()].effect) kept = &one;
+    if (is_of_fleet(one) && one.effect == scores_.groups()[groups.front()].effect) kept = &one;
   }
   if (kept == nullptr) return;
   kept->cause = group.cause;
   kept->effect = group.effect;
   kept->stands_in = group.stands_in;
   if (groups.size() < 2) return;
-  const std::string other = scores_.groups()[groups.back()].effect;
-  std::erase_if(result_.found, [&](const FleetFinding& one) {
-    return one.effect == other && one.cause != FleetCause::one_vehicle;
-  });
+  forget(scores_.groups()[groups.back()].effect);
 }
 
 /// Two of the fleet's that one explains as well as both, and one that another explains better.
@@ -588,14 +597,10 @@ FleetDiagnosis Recipe::run() {
   }
   // Coefficients of the fleet are those beside all that was found.
   for (FleetFinding& finding : result_.found) {
-    if (finding.cause != FleetCause::everywhere && finding.cause != FleetCause::grows) continue;
+    if (!is_of_fleet(finding)) continue;
     const auto group = std::ranges::find(scores_.groups(), finding.effect, &Group::effect);
-    std::vector<Index> places;
-    for (const Index column : group->columns) {
-      const auto at = std::ranges::find(accepted_, column);
-      if (at != accepted_.end()) places.push_back(at - accepted_.begin());
-    }
-    if (places.size() != group->columns.size()) continue;  // it differs
+    if (!is_accepted(*group)) continue;  // it differs
+    const std::vector<Index> places = places_of(*group);
     finding.as_good = as_good_as(static_cast<std::size_t>(group - scores_.groups().begin()));
     finding.coefficients =
         coefficients(*group, known_(places), known_covariance_.diagonal()(places).cwiseSqrt());

@@ -13,37 +13,15 @@ namespace sepcal {
 
 using fleet::parameter_rows;
 using fleet::sum;
+using fleet::tell;
+using fleet::Told;
 
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t fewest = 4;  // flights that show a change
-
-/// Parameters by themselves, where a triangle tells all of them.
-struct Told {
-  VectorXd values;
-  MatrixXd covariance;
-};
-
-Told tell(const TriangularFactor& factor, const VectorXd& reference) {
-  const Index p = reference.size();
-  const MatrixXd& T = factor.matrix();
-  const MatrixXd R = T.topLeftCorner(p, p);
-  const TriangularSolution solution = solve_triangular(R, T.col(p).head(p));
-  const MatrixXd inverse = generalised_inverse(R);
-  Told told{.values = reference + solution.x, .covariance = inverse * inverse.transpose()};
-  const MatrixXd back = inverse * R;
-  for (Index k = 0; k < p; ++k) {
-    if ((back.row(k).transpose() - VectorXd::Unit(p, k)).norm() < 1e-6) continue;
-    told.values[k] = not_a_number;
-    told.covariance.row(k).setConstant(not_a_number);
-    told.covariance.col(k).setConstant(not_a_number);
-  }
-  return told;
-}
 
 double left(const TriangularFactor& factor) { return remaining_square(factor); }
 

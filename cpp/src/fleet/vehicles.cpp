@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "sepcal/error.hpp"
 
@@ -67,6 +68,26 @@ TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const
   return all;
 }
 
+Told tell(const TriangularFactor& rows, const VectorXd& reference) {
+  const Index p = reference.size();
+  const MatrixXd& T = rows.matrix();
+  const MatrixXd R = T.topLeftCorner(p, p);
+  const TriangularSolution solution = solve_triangular(R, T.col(p).head(p));
+  const MatrixXd inverse = generalised_inverse(R);
+  Told told{.values = reference + solution.x, .covariance = inverse * inverse.transpose()};
+  if (solution.rank == p) return told;
+  // A parameter is told where the triangle gives it back, whatever is added along what it does not
+  // see.
+  const MatrixXd back = inverse * R;
+  for (Index k = 0; k < p; ++k) {
+    if ((back.row(k).transpose() - VectorXd::Unit(p, k)).norm() < 1e-6) continue;
+    told.values[k] = not_a_number;
+    told.covariance.row(k).setConstant(not_a_number);
+    told.covariance.col(k).setConstant(not_a_number);
+  }
+  return told;
+}
+
 MatrixXd jackknife(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
                    const VectorXd& reference) {
   const Index p = reference.size();
@@ -100,29 +121,14 @@ std::vector<VehicleFit> fit_vehicles(const std::vector<FleetFlight>& flights) {
   std::vector<VehicleFit> fits;
   for (const fleet::Vehicle& vehicle : fleet::group_vehicles(flights)) {
     const VectorXd reference = flights[vehicle.flights.front()].factor.values;
-    const Index p = reference.size();
-    const MatrixXd T = fleet::merge_parameters(flights, vehicle, reference).matrix();
-    const MatrixXd R = T.topLeftCorner(p, p);
-    const TriangularSolution solution = solve_triangular(R, T.col(p).head(p));
-    const MatrixXd inverse = generalised_inverse(R);
+    const TriangularFactor rows = fleet::merge_parameters(flights, vehicle, reference);
+    fleet::Told told = fleet::tell(rows, reference);
     VehicleFit fit{.vehicle = vehicle.name,
                    .flights = vehicle.flights.size(),
-                   .values = reference + solution.x,
-                   .covariance = inverse * inverse.transpose(),
+                   .values = std::move(told.values),
+                   .covariance = std::move(told.covariance),
                    .jackknife = fleet::jackknife(flights, vehicle, reference),
-                   .misfit = T(p, p) * T(p, p)};
-    if (solution.rank < p) {
-      // A parameter is told where the triangle gives it back, whatever is added along what it
-      // does not see.
-      const MatrixXd back = inverse * R;
-      for (Index k = 0; k < p; ++k) {
-        VectorXd wanted = VectorXd::Unit(p, k);
-        if ((back.row(k).transpose() - wanted).norm() < 1e-6) continue;
-        fit.values[k] = not_a_number;
-        fit.covariance.row(k).setConstant(not_a_number);
-        fit.covariance.col(k).setConstant(not_a_number);
-      }
-    }
+                   .misfit = remaining_square(rows)};
     for (const std::size_t i : vehicle.flights) fit.readings += flights[i].factor.readings;
     fits.push_back(std::move(fit));
   }

@@ -33,6 +33,15 @@ TriangularFactor sum(const TriangularFactor& a, const TriangularFactor& b);
 TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
                                   const Eigen::VectorXd& reference);
 
+/// Parameters and their covariance; NaN for what the rows do not tell.
+struct Told {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd covariance;
+};
+
+/// What rows [parameters | residual] at `reference` say.
+Told tell(const TriangularFactor& rows, const Eigen::VectorXd& reference);
+
 /// Of a vehicle, by leaving out each of its flights: (n - 1)/n sum of squares about their mean; NaN
 /// for fewer than three flights, and where what is left does not tell.
 Eigen::MatrixXd jackknife(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,

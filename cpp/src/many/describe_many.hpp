@@ -13,7 +13,7 @@
 
 namespace sepcal::many {
 
-/// Fills `result` but for the flights left out. `names`: of the fleet's flights.
+/// Fills `result` but for the flights left out. `names`: of the source's flights.
 void describe_many(const BlockModel& model, const JointProblem& joint, const JointStage& stage,
                    const ManyObjective& objective, const JointCovariance& covariance,
                    const std::vector<std::string>& names, ManyFit& result);

@@ -72,20 +72,21 @@ const FlightFit& ManyFit::flight(std::string_view name) const {
   return find_named(flights, name, "flight", "fit");
 }
 
-std::vector<FlightScore> Fleet::scores(const std::vector<FlightPoint>& /*points*/) {
-  throw Error("this fleet has no filter error; fit it by output error");
+std::vector<FlightScore> FlightSource::scores(const std::vector<FlightPoint>& /*points*/) {
+  throw Error("this source has no filter error; fit it by output error");
 }
 
-std::vector<FlightInnovations> Fleet::innovations(const std::vector<FlightPoint>& /*points*/) {
-  throw Error("this fleet has no filter error; fit it by output error");
+std::vector<FlightInnovations> FlightSource::innovations(
+    const std::vector<FlightPoint>& /*points*/) {
+  throw Error("this source has no filter error; fit it by output error");
 }
 
-std::vector<std::vector<TriangularFactor>> Fleet::score_blocks(
+std::vector<std::vector<TriangularFactor>> FlightSource::score_blocks(
     const std::vector<FlightPoint>& /*points*/, const std::vector<int>& /*blocks*/) {
-  throw Error("this fleet has no filter error; fit it by output error");
+  throw Error("this source has no filter error; fit it by output error");
 }
 
-ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& options) {
+ManyFit fit_many(const BlockModel& model, FlightSource& source, const ManyOptions& options) {
   const estimation::Problem problem(model, options.fit);
   const bool by_filter_error = options.fit.method == FitMethod::filter_error;
   if (!options.fit.process_noise.empty() && !by_filter_error) {
@@ -99,11 +100,11 @@ ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& optio
                 "'; fit each flight by itself with it, and leave out the rows that it forgives");
   }
   const Split parting = split(problem, options.own);
-  const std::vector<std::string> names = fleet.names();
+  const std::vector<std::string> names = source.names();
   check_names(names);
 
   ManyFit result;
-  std::vector<FlightStart> starts = fleet.start();
+  std::vector<FlightStart> starts = source.start();
   std::vector<std::size_t> used;
   JointProblem joint{problem, parting, {}, {}, {}};
   joint.output_squares = VectorXd::Zero(model.tables().n_z());
@@ -121,15 +122,15 @@ ManyFit fit_many(const BlockModel& model, Fleet& fleet, const ManyOptions& optio
   if (by_filter_error) {
     UsedFlights flights{used, {}, std::move(joint.starts)};
     for (const std::size_t i : used) flights.names.push_back(names[i]);
-    fit_joint_filter_error(model, problem, options, fleet, std::move(flights), result);
+    fit_joint_filter_error(model, problem, options, source, std::move(flights), result);
     return result;
   }
   joint.layout = {static_cast<Index>(used.size()), parting.n_own(), parting.n_shared()};
   joint.box = joint_box(problem, parting, joint.layout);
 
-  ManyObjective objective(fleet, std::move(used), joint.layout);
+  ManyObjective objective(source, std::move(used), joint.layout);
   const JointStage stage = run_joint_stage(joint, objective);
-  const JointCovariance covariance = find_joint_covariance(joint, stage, objective, fleet);
+  const JointCovariance covariance = find_joint_covariance(joint, stage, objective, source);
   describe_many(model, joint, stage, objective, covariance, names, result);
   return result;
 }

@@ -63,7 +63,7 @@ VectorXd own_weights(const JudgedFlight& judged, const ManyObjective& objective)
 }
 
 void ask_for_middles(JointCovariance& result, const JointProblem& joint, const JointStage& stage,
-                     const ManyObjective& objective, Fleet& fleet) {
+                     const ManyObjective& objective, FlightSource& source) {
   VectorXd rounding = VectorXd::Zero(stage.noise.size());
   for (Index j = 0; j < rounding.size() && !joint.noise_given(); ++j) {
     rounding[j] = 2.0 * joint.noise_floor(j);
@@ -78,7 +78,7 @@ void ask_for_middles(JointCovariance& result, const JointProblem& joint, const J
                          std::sqrt(result.ratio) * stage.noise, rounding, judged.columns,
                          beside_others(judged.share, result.joint)});
   }
-  const std::vector<MatrixXd> middles = fleet.score_covariances(questions);
+  const std::vector<MatrixXd> middles = source.score_covariances(questions);
   for (std::size_t q = 0; q < asked.size(); ++q) {
     JudgedFlight& judged = result.flights[asked[q]];
     judged.middle = middles[q];
@@ -200,14 +200,14 @@ MatrixXd JointCovariance::own_coloured(Index flight) const {
 }
 
 JointCovariance find_joint_covariance(const JointProblem& joint, const JointStage& stage,
-                                      const ManyObjective& objective, Fleet& fleet) {
+                                      const ManyObjective& objective, FlightSource& source) {
   const double ratio = judge_ratio(joint, stage, objective);
   const double known_ratio = std::isnan(ratio) ? 1.0 : ratio;
   JointCovariance result = factorise(joint, stage, objective, std::sqrt(known_ratio) * stage.noise);
   result.ratio = ratio;
   if (!result.is_defined()) return result;
   if (joint.problem.options().coloured_errors) {
-    ask_for_middles(result, joint, stage, objective, fleet);
+    ask_for_middles(result, joint, stage, objective, source);
   }
   result.add_middles(objective.prior_weights().tail(joint.layout.shared));
   return result;

@@ -58,8 +58,8 @@ JointCovariance factorise(const std::vector<TriangularFactor>& blocks,
                           const Eigen::MatrixXd& shared_prior);
 
 /// The objective stands at the solution, where no loose prior holds it. With
-/// FitOptions::coloured_errors the fleet is asked once more.
+/// FitOptions::coloured_errors the source is asked once more.
 JointCovariance find_joint_covariance(const JointProblem& joint, const JointStage& stage,
-                                      const ManyObjective& objective, Fleet& fleet);
+                                      const ManyObjective& objective, FlightSource& source);
 
 }  // namespace sepcal::many

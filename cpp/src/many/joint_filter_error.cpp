@@ -16,7 +16,7 @@
 #include "estimation/scoring.hpp"
 #include "estimation/theta_layout.hpp"
 #include "many/departure.hpp"
-#include "many/fleet_likelihood.hpp"
+#include "many/flights_likelihood.hpp"
 #include "many/joint_covariance.hpp"
 #include "many/joint_start.hpp"
 #include "many/named_results.hpp"
@@ -35,15 +35,15 @@ using estimation::Scoring;
 class JointFilterError {
  public:
   JointFilterError(const BlockModel& model, const estimation::Problem& problem,
-                   const ManyOptions& options, Fleet& fleet, UsedFlights flights)
+                   const ManyOptions& options, FlightSource& source, UsedFlights flights)
       : model_(model),
         problem_(problem),
-        fleet_(fleet),
+        source_(source),
         flights_(std::move(flights)),
         noises_(estimation::estimable_noises(model, problem.options())),
         parting_(split_with_noises(problem, options.own, static_cast<Index>(noises_.size()))),
         layout_{static_cast<Index>(flights_.names.size()), parting_.n_own(), parting_.n_shared()},
-        likelihood_(fleet, flights_.places, layout_, count(Estimated::Kind::process_noise),
+        likelihood_(source, flights_.places, layout_, count(Estimated::Kind::process_noise),
                     count(Estimated::Kind::output_noise)),
         estimated_(list_estimated()) {}
 
@@ -169,7 +169,7 @@ class JointFilterError {
   }
 
   std::vector<FlightInnovations> ask_innovations(const VectorXd& theta) const {
-    return fleet_.innovations(likelihood_.points(theta));
+    return source_.innovations(likelihood_.points(theta));
   }
 
   /// Blocks lie within flights: as many as one record of all rows would be cut into.
@@ -194,7 +194,7 @@ class JointFilterError {
     for (const Index i : inside) columns.push_back(scoring.free[static_cast<std::size_t>(i)]);
     columns.push_back(layout_.size());
     std::vector<TriangularFactor> factors;
-    const auto answers = fleet_.score_blocks(likelihood_.points(at.theta), blocks);
+    const auto answers = source_.score_blocks(likelihood_.points(at.theta), blocks);
     for (Index i = 0; i < layout_.flights; ++i) {
       for (const TriangularFactor& block : answers[static_cast<std::size_t>(i)]) {
         MatrixXd rows_of_all = likelihood_.spread(block, i)(Eigen::all, columns);
@@ -412,21 +412,21 @@ class JointFilterError {
 
   const BlockModel& model_;
   const estimation::Problem& problem_;
-  Fleet& fleet_;
+  FlightSource& source_;
   UsedFlights flights_;
   std::vector<Estimated> noises_;  // that are not given
   Split parting_;
   Layout layout_;
-  FleetLikelihood likelihood_;
+  FlightsLikelihood likelihood_;
   std::vector<Estimated> estimated_;
 };
 
 }  // namespace
 
 void fit_joint_filter_error(const BlockModel& model, const estimation::Problem& problem,
-                            const ManyOptions& options, Fleet& fleet, UsedFlights flights,
+                            const ManyOptions& options, FlightSource& source, UsedFlights flights,
                             ManyFit& result) {
-  JointFilterError(model, problem, options, fleet, std::move(flights)).run(result);
+  JointFilterError(model, problem, options, source, std::move(flights)).run(result);
 }
 
 }  // namespace sepcal::many

@@ -14,14 +14,14 @@ namespace sepcal::many {
 
 /// The flights that take part, which were asked already.
 struct UsedFlights {
-  std::vector<std::size_t> places;  // in the fleet
+  std::vector<std::size_t> places;  // in the source
   std::vector<std::string> names;
   std::vector<FlightStart> starts;
 };
 
 /// Fills `result` but for the flights left out.
 void fit_joint_filter_error(const BlockModel& model, const estimation::Problem& problem,
-                            const ManyOptions& options, Fleet& fleet, UsedFlights flights,
+                            const ManyOptions& options, FlightSource& source, UsedFlights flights,
                             ManyFit& result);
 
 }  // namespace sepcal::many

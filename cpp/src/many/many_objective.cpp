@@ -29,7 +29,7 @@ bool ManyObjective::linearise(const VectorXd& x) {
   if (at_.size() != x.size() || at_ != x) {
     std::vector<FlightPoint> points;
     for (Index i = 0; i < layout_.flights; ++i) points.push_back({flight(i), layout_.point(x, i)});
-    factors_ = fleet_.linearise(points);
+    factors_ = source_.linearise(points);
     at_ = x;
     ++passes_;
     combine_blocks();

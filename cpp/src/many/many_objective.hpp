@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The compressed problem of many flights: for each one n + 1 whitened residuals [q; rho] and their
-// Jacobian -[R; 0] in [own | shared], asked of the fleet once a point.
+// Jacobian -[R; 0] in [own | shared], asked of the source once a point.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,9 +15,9 @@ namespace sepcal::many {
 
 class ManyObjective {
  public:
-  /// `flights`: the fleet's places of those that take part. The fleet must outlive this.
-  ManyObjective(Fleet& fleet, std::vector<std::size_t> flights, const Layout& layout)
-      : fleet_(fleet),
+  /// `flights`: the places in the source of those that take part. The source must outlive this.
+  ManyObjective(FlightSource& source, std::vector<std::size_t> flights, const Layout& layout)
+      : source_(source),
         flights_(std::move(flights)),
         layout_(layout),
         prior_{Eigen::VectorXd::Zero(layout.own + layout.shared),
@@ -67,7 +67,7 @@ class ManyObjective {
  private:
   void combine_blocks();
 
-  Fleet& fleet_;
+  FlightSource& source_;
   std::vector<std::size_t> flights_;
   Layout layout_;
   Eigen::VectorXd weights_;

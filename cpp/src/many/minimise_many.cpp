@@ -20,7 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Takes the fleet to the point at hand before any flight is asked. An exception must not pass
+/// Takes the source to the point at hand before any flight is asked. An exception must not pass
 /// through Ceres: it is kept, and every evaluation fails from then on.
 class Visit final : public ceres::EvaluationCallback {
  public:

@@ -12,7 +12,7 @@
 
 namespace sepcal::many {
 
-/// x stays within the box; the start is clipped to it. What the fleet throws is thrown again.
+/// x stays within the box; the start is clipped to it. What the source throws is thrown again.
 estimation::Descent minimise_many(ManyObjective& objective, const Eigen::VectorXd& start,
                                   const numerics::Box& box, int iterations);
 

@@ -84,7 +84,7 @@ class Fleet:
             share: The field or column whose flights share parameters: "sensor", say.
             candidates: Effects to be tested [all that are linear].
             cluster: A concurrent.futures.Executor (Dask: client.get_executor()), a function that
-                makes one, as ProcessPoolExecutor, or None: here.
+                makes one, as ProcessPoolExecutor, or None: threads, here.
             store: A folder that keeps what was done; a run that ended early is taken up there.
             progress: None: on a terminal and in a notebook; "tqdm"; False: never.
             tolerance: Flights are visited again until no vehicle's parameter moves by more of its
@@ -92,7 +92,7 @@ class Fleet:
             **options: FitOptions.
 
         Raises:
-            Error: No log; a name that does not fit; a log that the table lacks.
+            Error: No log; no name that fits; a log that the table lacks.
         """
         self.logs, self._misnamed = find_logs(logs, names, table, share)
         self._like = like
@@ -213,7 +213,7 @@ class Fleet:
     @property
     def vehicles(self) -> dict[str, _core.VehicleFit]:
         """Each vehicle's parameters, from all its flights."""
-        return {fit.vehicle: fit for fit in _core.fit_vehicles(self._asked())}
+        return {fit.vehicle: fit for fit in self.fitted.vehicles}
 
     @property
     def parameters(self) -> list[str]:

@@ -7,10 +7,8 @@ import json
 import os
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from sepcal.fleet.logs import as_json
-from sepcal.fleet.parquet import table_bytes
+from sepcal.fleet.parquet import or_none, table_bytes
 from sepcal.fleet.passes import vehicle_error
 from sepcal.whole_files import write_bytes
 
@@ -62,7 +60,8 @@ def fleet_json(fleet: Fleet) -> str:
 
 def write_files(fleet: Fleet, folder: str | os.PathLike[str]) -> None:
     """Writes fleet.json, flights.parquet, vehicles.parquet and setup.json. Raises Error."""
-    told = json.loads(fleet_json(fleet))
+    text = fleet_json(fleet)
+    told = json.loads(text)
     place = os.fspath(folder)
     setup = {
         "schema": SCHEMA,
@@ -76,7 +75,7 @@ def write_files(fleet: Fleet, folder: str | os.PathLike[str]) -> None:
         "added": fleet.added,
     }
     write_bytes(os.path.join(place, "setup.json"), json.dumps(setup, indent=1).encode())
-    write_bytes(os.path.join(place, "fleet.json"), fleet_json(fleet).encode())
+    write_bytes(os.path.join(place, "fleet.json"), text.encode())
     flights = [
         {
             "name": one["name"],
@@ -100,8 +99,3 @@ def write_files(fleet: Fleet, folder: str | os.PathLike[str]) -> None:
         vehicles.append(row)
     write_bytes(os.path.join(place, "flights.parquet"), table_bytes(flights))
     write_bytes(os.path.join(place, "vehicles.parquet"), table_bytes(vehicles))
-
-
-def or_none(value: float) -> float | None:
-    """None where a number is not defined."""
-    return float(value) if np.isfinite(value) else None

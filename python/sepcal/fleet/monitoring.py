@@ -13,6 +13,7 @@ import numpy as np
 from sepcal import _core
 from sepcal.columns import Array
 from sepcal.fleet.logs import AGE
+from sepcal.fleet.parquet import or_none
 from sepcal.printing import aligned, in_line
 
 if TYPE_CHECKING:
@@ -223,4 +224,4 @@ def _departures(flights: Sequence[FleetFlight], parameters: Sequence[str]) -> li
 
 
 def _finite(values: Array) -> list[float | None]:
-    return [float(value) if np.isfinite(value) else None for value in values]
+    return [or_none(value) for value in values]

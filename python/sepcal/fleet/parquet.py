@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows as a Parquet file's bytes."""
+"""Rows as a Parquet file's bytes, and numbers as its cells and JSON have them."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Mapping, Sequence
 from typing import Any
+
+import numpy as np
 
 from sepcal import _core
 
@@ -22,3 +24,8 @@ def table_bytes(rows: Sequence[Mapping[str, Any]]) -> bytes:
     content = io.BytesIO()
     parquet.write_table(table, content)
     return content.getvalue()
+
+
+def or_none(value: float) -> float | None:
+    """None where a number is not defined."""
+    return float(value) if np.isfinite(value) else None

@@ -63,6 +63,7 @@ class Fitted:
 
     flights: dict[str, FleetFlight] = field(default_factory=dict)  # by name, in the logs' order
     left_out: dict[str, str] = field(default_factory=dict)  # why, by name
+    vehicles: list[_core.VehicleFit] = field(default_factory=list)  # of these flights
     passes: int = 0
     cpu_seconds: float = 0.0
 
@@ -84,7 +85,7 @@ def fit_flights(
         raise _core.Error(f"no flight can show the effect '{in_line(unknown[0])}'")
     centres = mean_centres(fitted.flights)
     for _ in range(MOST_PASSES):
-        values = _vehicle_values(fitted.flights)
+        values = _vehicle_values(fitted)
         parameters = next(iter(fitted.flights.values())).factor.parameters
         questions = {
             name: replace(
@@ -98,7 +99,7 @@ def fit_flights(
         }
         task = "reducing each flight at its vehicle's parameters"
         _take(logs, _visit(questions, task, way, fitted), fitted)
-        if _moved(fitted.flights, values) <= way.tolerance:
+        if _moved(fitted.vehicles, values) <= way.tolerance:
             break
     return fitted
 
@@ -127,12 +128,12 @@ def _take(logs: Sequence[Log], visits: Mapping[str, Visit], fitted: Fitted) -> N
         fitted.left_out[name] = "it has other parameters than the first flight"
         del flights[name]
     fitted.flights = flights
+    fitted.vehicles = _core.fit_vehicles([flight.asked() for flight in flights.values()])
 
 
-def _vehicle_values(flights: Mapping[str, FleetFlight]) -> dict[str, Array]:
+def _vehicle_values(fitted: Fitted) -> dict[str, Array]:
     """Of what a vehicle's flights do not tell, the median of the others."""
-    fits = _core.fit_vehicles([flight.asked() for flight in flights.values()])
-    all_values = np.array([fit.values for fit in fits])
+    all_values = np.array([fit.values for fit in fitted.vehicles])
     known = np.isfinite(all_values)
     typical = np.array(
         [
@@ -140,15 +141,18 @@ def _vehicle_values(flights: Mapping[str, FleetFlight]) -> dict[str, Array]:
             for column, there in zip(all_values.T, known.T, strict=True)
         ]
     )
-    start = np.asarray(next(iter(flights.values())).factor.values)
+    start = np.asarray(next(iter(fitted.flights.values())).factor.values)
     typical = np.where(np.isfinite(typical), typical, start)
-    return {fit.vehicle: np.where(known[k], all_values[k], typical) for k, fit in enumerate(fits)}
+    return {
+        fit.vehicle: np.where(known[k], all_values[k], typical)
+        for k, fit in enumerate(fitted.vehicles)
+    }
 
 
-def _moved(flights: Mapping[str, FleetFlight], values: Mapping[str, Array]) -> float:
+def _moved(vehicles: Sequence[_core.VehicleFit], values: Mapping[str, Array]) -> float:
     """The largest step of a vehicle's parameter, in its standard errors."""
     largest = 0.0
-    for found in _core.fit_vehicles([flight.asked() for flight in flights.values()]):
+    for found in vehicles:
         step = np.abs(np.asarray(found.values) - values[found.vehicle])
         error = np.sqrt(np.diag(np.asarray(found.covariance)))
         told = np.isfinite(step) & (error > 0)

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
+from sepcal.columns import Array
 from sepcal.fleet.findings import FleetDiagnosis, in_short, sentence_of
 from sepcal.fleet.fleet import Fleet
 from sepcal.fleet.monitoring import Monitoring
@@ -14,6 +16,7 @@ from sepcal.fleet.passes import vehicle_error
 from sepcal.markup import Html, html, in_figure, join
 from sepcal.reporting import words
 from sepcal.reporting.page import Figure, Grid, Page, Section, build_page, read_plotly
+from sepcal.reporting.tables import table
 
 MOST_DRAWN = 12  # vehicles, in time
 
@@ -25,7 +28,7 @@ def fleet_report(fleet: Fleet) -> str:
         _missing(found),
         _vehicles(fleet),
         _flights(fleet),
-        _in_time(fleet, watched),
+        _in_time(watched),
     ]
     return build_page(
         Page(f"Fleet of {len(fleet.vehicles)} vehicles", _verdict(fleet, found, watched), sections),
@@ -61,20 +64,28 @@ def _verdict(fleet: Fleet, found: FleetDiagnosis, watched: Monitoring) -> Html:
     return join("\n", lines)
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> Html:
-    top = join("", (html("<th>{}</th>", cell) for cell in head))
-    body = join(
-        "\n",
-        (
-            html("<tr>{}</tr>", join("", (html("<td>{}</td>", cell) for cell in row)))
-            for row in rows
-        ),
+def _draw_points(
+    title: str,
+    x_title: str,
+    y_title: str,
+    values: Array,
+    names: Sequence[str],
+    errors: Array | None = None,
+    height: int = 260,
+) -> Figure:
+    """Points side by side, each with two standard errors and a name."""
+    data: dict[str, Any] = {
+        "type": "scatter", "mode": "markers", "x": np.arange(len(values), dtype=float), "y": values,
+        "text": [in_figure(name) for name in names],
+        "hovertemplate": "%{text}: %{y:.5g}<extra></extra>",
+        "marker": {"size": 5, "color": words.MODELLED},
+    }  # fmt: skip
+    if errors is not None:
+        data["error_y"] = {"type": "data", "array": 2 * errors, "thickness": 1, "width": 0}
+    layout = words.layout(
+        height, in_figure(title), xaxis=words.axis(x_title), yaxis=words.axis(y_title)
     )
-    return html(
-        '<div class="table"><table><thead><tr>{}</tr></thead><tbody>{}</tbody></table></div>',
-        top,
-        body,
-    )
+    return Figure([data], layout, title)
 
 
 def _missing(found: FleetDiagnosis) -> Section:
@@ -87,15 +98,14 @@ def _missing(found: FleetDiagnosis) -> Section:
         ]
         for one in (*found.found, *found.others[:8])
     ]
+    head = [("effect", False), ("where", False), ("p", True), ("drop of the misfit", True)]
     lead = (
         f"{len(found.found)} found. With all of them the misfit per reading falls from "
         f"{found.misfit_before:.3g} to {found.misfit_after:.3g}; of noise alone it is 1."
         if found.found
         else "No test is significant; these come nearest."
     )
-    return Section(
-        "What is missing", lead, [_table(["effect", "where", "p", "drop of the misfit"], rows)]
-    )
+    return Section("What is missing", lead, [table(head, rows)])
 
 
 def _vehicles(fleet: Fleet) -> Section:
@@ -106,73 +116,42 @@ def _vehicles(fleet: Fleet) -> Section:
         values = np.array([fit.values[k] for fit in vehicles])
         errors = np.array([vehicle_error(fit, k) for fit in vehicles])
         order = np.argsort(values)
-        names = [in_figure(vehicles[i].vehicle) for i in order]
-        data = [{
-            "type": "scatter", "mode": "markers", "x": np.arange(len(order), dtype=float),
-            "y": values[order], "text": names, "hovertemplate": "%{text}: %{y:.5g}<extra></extra>",
-            "error_y": {"type": "data", "array": 2 * errors[order], "thickness": 1, "width": 0},
-            "marker": {"size": 5, "color": words.MODELLED},
-        }]  # fmt: skip
-        layout = words.layout(
-            260, name, xaxis=words.axis("vehicles, sorted"), yaxis=words.axis(name)
+        names = [vehicles[i].vehicle for i in order]
+        figures.append(
+            _draw_points(name, "vehicles, sorted", name, values[order], names, errors[order])
         )
-        figures.append(Figure(data, layout, f"{name} of each vehicle"))
-    return Section(
-        "Vehicles", "Each vehicle's parameters with two standard errors, sorted.",
-        [Grid(figures)],
-    )  # fmt: skip
+    lead = "Each vehicle's parameters with two standard errors, sorted."
+    return Section("Vehicles", lead, [Grid(figures)])
 
 
 def _flights(fleet: Fleet) -> Section:
     flights = list(fleet.flights.values())
     misfits = np.array([flight.misfit for flight in flights])
-    names = [in_figure(flight.log.name) for flight in flights]
-    data = [{
-        "type": "scatter", "mode": "markers", "x": np.arange(len(flights), dtype=float),
-        "y": misfits, "text": names, "hovertemplate": "%{text}: %{y:.3g}<extra></extra>",
-        "marker": {"size": 4, "color": words.MODELLED},
-    }]  # fmt: skip
-    layout = words.layout(
-        280, "Misfit per reading", xaxis=words.axis("flights"), yaxis=words.axis("noise alone: 1")
-    )
+    names = [flight.log.name for flight in flights]
     worst = sorted(flights, key=lambda flight: -flight.misfit)[:8]
     rows = [
         [one.log.name, one.log.vehicle, f"{one.misfit:.3g}", f"{one.factor.rmse:.3g}"]
         for one in worst
     ]
-    return Section(
-        "Flights",
-        "How well the vehicle's parameters fit each of its flights.",
-        [
-            Figure(data, layout, "misfit of each flight"),
-            _table(["worst flight", "vehicle", "misfit", "rmse"], rows),
-        ],
-    )
+    head = [("worst flight", False), ("vehicle", False), ("misfit", True), ("rmse", True)]
+    lead = "How well the vehicle's parameters fit each of its flights."
+    figure = _draw_points("Misfit per reading", "flights", "noise alone: 1", misfits, names)
+    return Section("Flights", lead, [figure, table(head, rows)])
 
 
-def _in_time(fleet: Fleet, watched: Monitoring) -> Section:
-    """Of vehicles that changed, else of those that depart most."""
-    named = [one.vehicle for one in watched.changes] + [one.vehicle for one in watched.departures]
-    shown = list(dict.fromkeys(named))[:MOST_DRAWN]
+def _in_time(watched: Monitoring) -> Section:
+    """Of vehicles that changed, then of those that are farthest from the others."""
+    shown = {one.vehicle: (one.parameter, " changes") for one in watched.changes}
+    for departure in watched.departures:
+        shown.setdefault(departure.vehicle, (departure.parameter, ""))
     series = {one.vehicle: one for one in watched.series}
     figures = []
-    for vehicle in shown:
+    for vehicle, (name, what) in list(shown.items())[:MOST_DRAWN]:
         one = series[vehicle]
-        change = next((c for c in watched.changes if c.vehicle == vehicle), None)
-        depart = next(d for d in watched.departures if d.vehicle == vehicle)
-        name = change.parameter if change else depart.parameter
         k = watched.parameters.index(name)
         values, errors = np.asarray(one.values)[k], np.asarray(one.errors)[k]
-        data = [{
-            "type": "scatter", "mode": "markers", "x": np.arange(len(values), dtype=float),
-            "y": values, "text": [in_figure(flight) for flight in one.flights],
-            "hovertemplate": "%{text}: %{y:.5g}<extra></extra>",
-            "error_y": {"type": "data", "array": 2 * errors, "thickness": 1, "width": 0},
-            "marker": {"size": 5, "color": words.MODELLED},
-        }]  # fmt: skip
-        title = f"{in_figure(vehicle)}: {name}" + (" changes" if change else "")
-        layout = words.layout(240, title, xaxis=words.axis("flights"), yaxis=words.axis(name))
-        figures.append(Figure(data, layout, f"{vehicle}: {name} from flight to flight"))
+        title = f"{vehicle}: {name}{what}"
+        figures.append(_draw_points(title, "flights", name, values, one.flights, errors, 240))
     lead = (
         "Parameters that changed, and vehicles that are farthest from the others: each flight by "
         "itself, with two standard errors."

@@ -14,13 +14,13 @@
 namespace sepcal::many {
 
 /// theta: own parameters of each flight, then the shared ones, as Layout has them.
-class FleetLikelihood final : public ScoredLikelihood {
+class FlightsLikelihood final : public ScoredLikelihood {
  public:
-  /// `flights`: the fleet's places of those that take part. `noises` and `outputs`: how many
-  /// logarithms of process noises and of outputs' end theta. The fleet must outlive this.
-  FleetLikelihood(Fleet& fleet, std::vector<std::size_t> flights, const Layout& layout,
-                  Eigen::Index noises, Eigen::Index outputs)
-      : fleet_(fleet),
+  /// `flights`: the places in the source of those that take part. `noises` and `outputs`: how many
+  /// logarithms of process noises and of outputs' end theta. The source must outlive this.
+  FlightsLikelihood(FlightSource& source, std::vector<std::size_t> flights, const Layout& layout,
+                    Eigen::Index noises, Eigen::Index outputs)
+      : source_(source),
         flights_(std::move(flights)),
         layout_(layout),
         noises_(noises),
@@ -44,7 +44,7 @@ class FleetLikelihood final : public ScoredLikelihood {
   int passes() const { return passes_; }
 
  private:
-  Fleet& fleet_;
+  FlightSource& source_;
   std::vector<std::size_t> flights_;
   Layout layout_;
   Eigen::Index noises_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "many/fleet_likelihood.hpp"
+#include "many/flights_likelihood.hpp"
 
 namespace sepcal::many {
 
@@ -7,7 +7,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-ScoredLikelihood::Value FleetLikelihood::value(const VectorXd& theta) const {
+ScoredLikelihood::Value FlightsLikelihood::value(const VectorXd& theta) const {
   Value sum;
   for (const FlightScore& score : ask(theta)) {
     sum.cost += score.cost;
@@ -16,8 +16,8 @@ ScoredLikelihood::Value FleetLikelihood::value(const VectorXd& theta) const {
   return sum;
 }
 
-ScoredLikelihood::Value FleetLikelihood::scores(const VectorXd& theta,
-                                                const VisitScores& visit) const {
+ScoredLikelihood::Value FlightsLikelihood::scores(const VectorXd& theta,
+                                                  const VisitScores& visit) const {
   const Value sum = value(theta);
   for (Index i = 0; i < layout_.flights; ++i) {
     MatrixXd rows = spread(scores_[static_cast<std::size_t>(i)].factor, i);
@@ -26,15 +26,15 @@ ScoredLikelihood::Value FleetLikelihood::scores(const VectorXd& theta,
   return sum;
 }
 
-const std::vector<FlightScore>& FleetLikelihood::ask(const VectorXd& theta) const {
+const std::vector<FlightScore>& FlightsLikelihood::ask(const VectorXd& theta) const {
   if (at_.size() == theta.size() && at_ == theta) return scores_;
-  scores_ = fleet_.scores(points(theta));
+  scores_ = source_.scores(points(theta));
   at_ = theta;
   ++passes_;
   return scores_;
 }
 
-std::vector<FlightPoint> FleetLikelihood::points(const VectorXd& theta) const {
+std::vector<FlightPoint> FlightsLikelihood::points(const VectorXd& theta) const {
   std::vector<FlightPoint> points;
   for (Index i = 0; i < layout_.flights; ++i) {
     points.push_back({flights_[static_cast<std::size_t>(i)], layout_.point(theta, i)});
@@ -42,7 +42,7 @@ std::vector<FlightPoint> FleetLikelihood::points(const VectorXd& theta) const {
   return points;
 }
 
-MatrixXd FleetLikelihood::spread(const TriangularFactor& factor, Index flight) const {
+MatrixXd FlightsLikelihood::spread(const TriangularFactor& factor, Index flight) const {
   MatrixXd rows = MatrixXd::Zero(factor.columns(), size() + 1);
   for (Index k = 0; k < layout_.own + layout_.shared; ++k) {
     rows.col(layout_.place(flight, k)) = factor.matrix().col(k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A fleet in this process: records in memory, visited by a pool of threads.
+// A source in this process: records in memory, visited by a pool of threads.
 #include <algorithm>
 #include <thread>
 
@@ -12,16 +12,16 @@ namespace {
 
 using Flights = std::vector<std::pair<std::string, Record>>;
 
-/// Threads for a flight: those of the whole fleet, shared out.
+/// Threads for a flight: those of the whole source, shared out.
 int threads_each(int threads, std::size_t flights) {
   const int all =
       threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return std::max(1, all / static_cast<int>(std::max<std::size_t>(flights, 1)));
 }
 
-class LocalFleet final : public Fleet {
+class LocalFlights final : public FlightSource {
  public:
-  LocalFleet(const BlockModel& model, Flights flights, ManyOptions options)
+  LocalFlights(const BlockModel& model, Flights flights, ManyOptions options)
       : model_(model),
         flights_(std::move(flights)),
         options_(std::move(options)),
@@ -103,8 +103,8 @@ class LocalFleet final : public Fleet {
 }  // namespace
 
 ManyFit fit_many(const BlockModel& model, Flights flights, const ManyOptions& options) {
-  LocalFleet fleet(model, std::move(flights), options);
-  return fit_many(model, fleet, options);
+  LocalFlights source(model, std::move(flights), options);
+  return fit_many(model, source, options);
 }
 
 }  // namespace sepcal
