@@ -160,6 +160,7 @@ __all__: list[str] = [
     "stream_csv",
     "vane_boom",
     "whiten",
+    "with_rate",
     "write_whole",
 ]
 
@@ -4738,7 +4739,7 @@ def confidence_ellipse(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
 def cost_landscape(arg0: Calibration, arg1: Flight) -> CostLandscape: ...
 def diagnose_fleet(
-    arg0: collections.abc.Sequence[
+    flights: collections.abc.Sequence[
         tuple[
             str,
             str,
@@ -4746,8 +4747,9 @@ def diagnose_fleet(
             collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         ]
     ],
-    arg1: typing.SupportsFloat | typing.SupportsIndex,
-    arg2: typing.SupportsInt | typing.SupportsIndex,
+    significance: typing.SupportsFloat | typing.SupportsIndex,
+    most: typing.SupportsInt | typing.SupportsIndex,
+    common: collections.abc.Sequence[str] = [],
 ) -> FleetDiagnosis: ...
 def effects(arg0: str) -> list[CataloguedEffect]: ...
 def effects_of(arg0: Model) -> list[CataloguedEffect]: ...
@@ -4835,7 +4837,7 @@ def fit_noise(
     arg4: NoiseModel | None,
 ) -> NoiseFit: ...
 def fit_population(
-    arg0: collections.abc.Sequence[
+    flights: collections.abc.Sequence[
         tuple[
             str,
             str,
@@ -4843,8 +4845,9 @@ def fit_population(
             collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         ]
     ],
-    arg1: bool,
-    arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    correlated: bool,
+    inflation: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    common: collections.abc.Sequence[str] = [],
 ) -> Population: ...
 def fit_single_stage(
     model: Model,
@@ -4884,7 +4887,7 @@ def fit_trials(
     dict[int, str],
 ]: ...
 def fit_vehicles(
-    arg0: collections.abc.Sequence[
+    flights: collections.abc.Sequence[
         tuple[
             str,
             str,
@@ -4892,6 +4895,7 @@ def fit_vehicles(
             collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         ]
     ],
+    common: collections.abc.Sequence[str] = [],
 ) -> list[VehicleFit]: ...
 def five_hole_probe(
     arg0: typing.SupportsFloat | typing.SupportsIndex,
@@ -4901,7 +4905,7 @@ def five_hole_probe(
     ],
 ) -> Model: ...
 def follow_vehicles(
-    arg0: collections.abc.Sequence[
+    flights: collections.abc.Sequence[
         tuple[
             str,
             str,
@@ -4909,6 +4913,7 @@ def follow_vehicles(
             collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex],
         ]
     ],
+    common: collections.abc.Sequence[str] = [],
 ) -> list[VehicleSeries]: ...
 def foreign_reader() -> typing.Any: ...
 def gather_figures(arg0: Calibration, arg1: Flight) -> FlightFigures: ...
@@ -5081,6 +5086,9 @@ def whiten(
     ]
     | None,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+def with_rate(
+    arg0: FlightFactor, arg1: str, arg2: str, arg3: typing.SupportsFloat | typing.SupportsIndex
+) -> FlightFactor: ...
 def write_whole(arg0: collections.abc.Mapping[str, str]) -> None: ...
 
 LEAST_GAIN: float = 0.01

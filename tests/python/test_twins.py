@@ -107,7 +107,7 @@ PUBLIC = set().union(
 )
 CLASSES = [one for one in map(sepcal.__dict__.get, sepcal.__all__) if isinstance(one, type)]
 OWN = [kind for one in CLASSES for kind in one.__mro__ if kind.__module__.startswith("sepcal")]
-OTHER = {"calibrate"}  # Population.calibrate takes a fleet as its prior: C++ has another of the name
+OTHER = {"calibrate"}  # C++ has another than Population.calibrate, with a fleet as its prior
 SAME = set(sepcal.__all__).union(*map(vars, OWN)) - OTHER  # and nothing that is a dict's
 RENAMED = lines("python.md", "C++ and Python names")
 WITHOUT = lines("python.md", "In C++ only")

@@ -53,6 +53,12 @@ struct ReduceOptions {
 /// flight that is not finite at the point.
 FlightFactor reduce(const DiagnosedFit& fitted, const ReduceOptions& options);
 
+/// With one parameter more, the rate at which `parameter` grows with an attribute that is
+/// `distance` from its mean in this flight, called "parameter[attribute]" and 0 where it was
+/// linearised. Throws Error for an unknown parameter.
+FlightFactor with_rate(const FlightFactor& factor, const std::string& parameter,
+                       const std::string& attribute, double distance);
+
 /// A flight of a fleet.
 struct FleetFlight {
   std::string name;
@@ -72,9 +78,11 @@ struct VehicleFit {
   double readings = 0.0;
 };
 
-/// Each vehicle by itself, in the order in which they come. Throws Error for flights whose
-/// parameters differ.
-std::vector<VehicleFit> fit_vehicles(const std::vector<FleetFlight>& flights);
+/// Each vehicle by itself, in the order in which they come; `common` parameters have one value for
+/// the fleet, with an error of all vehicles. Throws Error for flights whose parameters differ, for
+/// a common one that is none of them, and where none is left to the vehicles.
+std::vector<VehicleFit> fit_vehicles(const std::vector<FleetFlight>& flights,
+                                     const std::vector<std::string>& common = {});
 
 /// How parameters spread over vehicles: theta_v = mean + b_v, b_v ~ N(0, spread).
 struct Population {
@@ -95,6 +103,7 @@ struct PopulationOptions {
   /// By what the noise models' variances are multiplied (p); empty: as leaving out flights has it,
   /// over all vehicles.
   Eigen::VectorXd inflation = {};
+  std::vector<std::string> common = {};  // parameters that the fleet shares: their spread is none
 };
 
 /// By restricted maximum likelihood on the vehicles' triangles (Patterson & Thompson 1971;
@@ -121,8 +130,10 @@ struct VehicleSeries {
 
 /// Each vehicle's flights in their order. F compares what two sets of parameters take of the misfit
 /// with how flights scatter within each (Page 1955; Quandt 1958). Fewer than four flights show no
-/// change. Throws Error as fit_vehicles() does.
-std::vector<VehicleSeries> follow_vehicles(const std::vector<FleetFlight>& flights);
+/// change. `common` parameters are held at the fleet's value and not followed. Throws Error as
+/// fit_vehicles() does.
+std::vector<VehicleSeries> follow_vehicles(const std::vector<FleetFlight>& flights,
+                                           const std::vector<std::string>& common = {});
 
 /// Where a missing effect is.
 enum class FleetCause {
@@ -170,6 +181,9 @@ struct FleetDiagnosis {
 struct FleetDiagnosisOptions {
   double significance = 0.01;  // for the fleet, after correction, shared among the causes
   int most = 8;                // findings
+  /// Parameters that the fleet shares. Whether one differs in a vehicle or between vehicles is
+  /// asked as of candidates.
+  std::vector<std::string> common = {};
 };
 
 /// Tests every candidate of the triangles and every parameter's growth with an attribute, each

@@ -180,16 +180,22 @@ void define_fleet(py::module_& module) {
                       {std::move(own), std::move(at), std::move(candidates), std::move(centres)});
       },
       WithoutGil());
+  module.def("with_rate", &with_rate, WithoutGil());
   module.def(
       "fit_vehicles",
-      [](const std::vector<Given>& flights) { return fit_vehicles(flights_of(flights)); },
-      WithoutGil());
+      [](const std::vector<Given>& flights, const std::vector<std::string>& common) {
+        return fit_vehicles(flights_of(flights), common);
+      },
+      py::arg("flights"), py::arg("common") = std::vector<std::string>{}, WithoutGil());
   module.def(
       "fit_population",
-      [](const std::vector<Given>& flights, bool correlated, Eigen::VectorXd inflation) {
-        return fit_population(flights_of(flights), {correlated, std::move(inflation)});
+      [](const std::vector<Given>& flights, bool correlated, Eigen::VectorXd inflation,
+         std::vector<std::string> common) {
+        return fit_population(flights_of(flights),
+                              {correlated, std::move(inflation), std::move(common)});
       },
-      WithoutGil());
+      py::arg("flights"), py::arg("correlated"), py::arg("inflation"),
+      py::arg("common") = std::vector<std::string>{}, WithoutGil());
   module.def("find_spread",
              [](const std::vector<double>& estimates, const std::vector<double>& variances) {
                const fleet::Spread spread = fleet::find_spread(estimates, variances);
@@ -200,14 +206,18 @@ void define_fleet(py::module_& module) {
   });
   module.def(
       "follow_vehicles",
-      [](const std::vector<Given>& flights) { return follow_vehicles(flights_of(flights)); },
-      WithoutGil());
+      [](const std::vector<Given>& flights, const std::vector<std::string>& common) {
+        return follow_vehicles(flights_of(flights), common);
+      },
+      py::arg("flights"), py::arg("common") = std::vector<std::string>{}, WithoutGil());
   module.def(
       "diagnose_fleet",
-      [](const std::vector<Given>& flights, double significance, int most) {
-        return diagnose(flights_of(flights), {significance, most});
+      [](const std::vector<Given>& flights, double significance, int most,
+         std::vector<std::string> common) {
+        return diagnose(flights_of(flights), {significance, most, std::move(common)});
       },
-      WithoutGil());
+      py::arg("flights"), py::arg("significance"), py::arg("most"),
+      py::arg("common") = std::vector<std::string>{}, WithoutGil());
 }
 
 }  // namespace sepcal::bindings

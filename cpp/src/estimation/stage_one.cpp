@@ -42,6 +42,7 @@ FitOptions hold_unsampled(const Problem& problem) {
     const auto value = options.unsampled.find(parameter.name);
     if (value != options.unsampled.end()) {
       options.fix[parameter.name] = std::clamp(value->second, parameter.lower, parameter.upper);
+      options.prior.erase(parameter.name);
     } else if (const auto drawn = options.sampling_distribution.find(parameter.name);
                drawn != options.sampling_distribution.end()) {
       distributions.insert(*drawn);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <ranges>
 
+#include "fleet/common.hpp"
 #include "fleet/moderation.hpp"
 #include "fleet/scores.hpp"
 #include "fleet/spread.hpp"
@@ -67,8 +68,14 @@ struct VehicleScores {
 
 class Recipe {
  public:
+  /// `options.common` are columns already.
   Recipe(const std::vector<FleetFlight>& flights, const FleetDiagnosisOptions& options)
-      : flights_(flights), options_(options), scores_(flights) {}
+      : flights_(flights), options_(options), scores_(flights) {
+    for (const Group& group : scores_.groups()) {
+      if (!is_common(group)) continue;
+      accepted_.insert(accepted_.end(), group.columns.begin(), group.columns.end());
+    }
+  }
 
   FleetDiagnosis run();
 
@@ -81,6 +88,7 @@ class Recipe {
                      std::vector<Tested>& tested) const;
   std::optional<Tested> test_differences(std::size_t group, const VehicleScores& vehicles) const;
   bool is_accepted(const Group& group) const;
+  bool is_common(const Group& group) const;
   std::vector<Tested> test_all() const;
   void add(const Tested& best);
   void eliminate(double number);
@@ -187,6 +195,11 @@ void Recipe::estimate() {
 
 bool Recipe::is_accepted(const Group& group) const {
   return std::ranges::find(accepted_, group.columns.front()) != accepted_.end();
+}
+
+/// Of what the model has already.
+bool Recipe::is_common(const Group& group) const {
+  return std::ranges::find(options_.common, group.effect) != options_.common.end();
 }
 
 /// Of the group's coefficients: the fleet's where it has them, else none.
@@ -417,7 +430,7 @@ void Recipe::eliminate(double number) {
     const Group* weakest = nullptr;
     double largest = std::log10(options_.significance / number);
     for (const Group& group : scores_.groups()) {
-      if (!is_accepted(group)) continue;
+      if (!is_accepted(group) || is_common(group)) continue;
       const double log10_p = test_none(*common, places_of(group));
       if (log10_p <= largest) continue;
       largest = log10_p;
@@ -434,7 +447,8 @@ void Recipe::eliminate(double number) {
 std::vector<std::size_t> Recipe::accepted_groups() const {
   std::vector<std::size_t> accepted;
   for (std::size_t g = 0; g < scores_.groups().size(); ++g) {
-    if (is_accepted(scores_.groups()[g])) accepted.push_back(g);
+    const Group& group = scores_.groups()[g];
+    if (is_accepted(group) && !is_common(group)) accepted.push_back(g);
   }
   return accepted;
 }
@@ -576,7 +590,8 @@ FleetDiagnosis Recipe::run() {
     for (std::size_t i = 0; i < misfits.size(); ++i) misfits[i] /= flights_[i].factor.readings;
     return misfits;
   };
-  const std::vector<double> before = scores_.misfits({}, {});
+  estimate();
+  const std::vector<double> before = scores_.misfits(accepted_, known_);
   result_.misfit_before = per_reading(total(before));
   result_.flights_before = tell(before);
   std::vector<Tested> tested;
@@ -622,7 +637,9 @@ FleetDiagnosis Recipe::run() {
 
 FleetDiagnosis diagnose(const std::vector<FleetFlight>& flights,
                         const FleetDiagnosisOptions& options) {
-  return Recipe(flights, options).run();
+  group_vehicles(flights);  // throws Error for what is no fleet
+  if (options.common.empty()) return Recipe(flights, options).run();
+  return Recipe(common_as_columns(flights, part(flights, options.common)), options).run();
 }
 
 }  // namespace sepcal

@@ -11,6 +11,7 @@
 
 #include <cmath>
 
+#include "fleet/common.hpp"
 #include "fleet/vehicles.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/order_statistics.hpp"
@@ -70,17 +71,24 @@ AtSpread evaluate(const std::vector<VehicleData>& vehicles, const MatrixXd& S) {
   return at;
 }
 
-/// Over the entries of L, S = L L': the diagonal, or all below it too.
-class RestrictedLikelihood final : public ceres::FirstOrderFunction {
- public:
-  RestrictedLikelihood(const std::vector<VehicleData>& vehicles, Index p, bool correlated)
-      : vehicles_(vehicles), p_(p) {
-    for (Index column = 0; column < p; ++column) {
-      for (Index row = column; row < (correlated ? p : column + 1); ++row) {
-        places_.emplace_back(row, column);
-      }
+using Places = std::vector<std::pair<Index, Index>>;  // row and column
+
+/// Of a spread between these parameters, what is estimated: the diagonal, or all below it too.
+Places spread_places(const std::vector<Index>& varying, bool correlated) {
+  Places places;
+  for (std::size_t i = 0; i < varying.size(); ++i) {
+    for (std::size_t j = i; j < (correlated ? varying.size() : i + 1); ++j) {
+      places.emplace_back(varying[j], varying[i]);
     }
   }
+  return places;
+}
+
+/// Over entries of L, S = L L'.
+class RestrictedLikelihood final : public ceres::FirstOrderFunction {
+ public:
+  RestrictedLikelihood(const std::vector<VehicleData>& vehicles, Index p, Places places)
+      : vehicles_(vehicles), p_(p), places_(std::move(places)) {}
 
   MatrixXd root(const double* x) const {
     MatrixXd L = MatrixXd::Zero(p_, p_);
@@ -114,17 +122,15 @@ class RestrictedLikelihood final : public ceres::FirstOrderFunction {
  private:
   const std::vector<VehicleData>& vehicles_;
   Index p_;
-  std::vector<std::pair<Index, Index>> places_ = {};
+  Places places_;
 };
 
-/// dS/ds of each entry of a spread: its diagonal, or all below it too.
-std::vector<MatrixXd> spread_directions(Index p, bool correlated) {
+/// dS/ds of each entry of a spread.
+std::vector<MatrixXd> spread_directions(Index p, const Places& places) {
   std::vector<MatrixXd> directions;
-  for (Index column = 0; column < p; ++column) {
-    for (Index row = column; row < (correlated ? p : column + 1); ++row) {
-      directions.emplace_back(MatrixXd::Zero(p, p));
-      directions.back()(row, column) = directions.back()(column, row) = 1.0;
-    }
+  for (const auto& [row, column] : places) {
+    directions.emplace_back(MatrixXd::Zero(p, p));
+    directions.back()(row, column) = directions.back()(column, row) = 1.0;
   }
   return directions;
 }
@@ -175,7 +181,7 @@ Population fit_population(const std::vector<FleetFlight>& flights,
     throw Error("a population is of at least three vehicles; this fleet has " +
                 std::to_string(vehicles.size()));
   }
-  const std::vector<VehicleFit> fits = fit_vehicles(flights);
+  const std::vector<VehicleFit> fits = fit_vehicles(flights, options.common);
   const VectorXd& reference = flights.front().factor.values;
   const Index p = reference.size();
   Population population{.parameters = flights.front().factor.parameters};
@@ -201,7 +207,8 @@ Population fit_population(const std::vector<FleetFlight>& flights,
     data.push_back({scaled * unit.asDiagonal(), scaled * found});
   }
 
-  auto* likelihood = new RestrictedLikelihood(data, p, options.correlated);
+  const Places places = spread_places(fleet::part(flights, options.common).own, options.correlated);
+  auto* likelihood = new RestrictedLikelihood(data, p, places);
   const ceres::GradientProblem problem(likelihood);
   VectorXd x = likelihood->start();
   ceres::GradientProblemSolver::Options solver;
@@ -222,7 +229,7 @@ Population fit_population(const std::vector<FleetFlight>& flights,
   population.mean = reference + unit.cwiseProduct(at.mean);
   population.mean_covariance = unit.asDiagonal() * at.mean_covariance * unit.asDiagonal();
   population.spread = unit.asDiagonal() * S * unit.asDiagonal();
-  const std::vector<MatrixXd> directions = spread_directions(p, options.correlated);
+  const std::vector<MatrixXd> directions = spread_directions(p, places);
   const MatrixXd of_spread = spread_covariance(at.B, directions);
   population.shrunken.resize(p, std::ssize(vehicles));
   population.shrunken_errors.resize(p, std::ssize(vehicles));

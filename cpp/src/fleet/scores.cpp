@@ -99,12 +99,12 @@ void Scores::find_groups(const std::vector<FleetFlight>& flights) {
   const FlightFactor& first = flights.front().factor;
   for (const std::string& attribute : attributes) {
     for (std::size_t k = 0; k < first.parameters.size(); ++k) {
-      const std::string name = first.parameters[k] + "[" + attribute + "]";
+      const std::string name = rate_name(first.parameters[k], attribute);
+      if (std::ranges::find(groups_, name, &Group::effect) != groups_.end()) continue;
       const auto column = static_cast<Index>(columns_.size());
       growths_.push_back({column, static_cast<Index>(k), attribute});
       groups_.push_back({.cause = FleetCause::grows, .effect = name, .columns = {column}});
-      const std::string& unit = first.units[k];
-      columns_.push_back({name, name, (unit.empty() ? "1" : unit) + "/" + attribute});
+      columns_.push_back({name, name, rate_unit(first.units[k], attribute)});
     }
   }
 }

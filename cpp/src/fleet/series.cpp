@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fleet/common.hpp"
 #include "fleet/vehicles.hpp"
 #include "numerics/tails.hpp"
 #include "sepcal/fleet.hpp"
@@ -96,10 +97,18 @@ VehicleSeries follow_vehicle(const std::vector<FleetFlight>& flights,
 
 }  // namespace
 
-std::vector<VehicleSeries> follow_vehicles(const std::vector<FleetFlight>& flights) {
+std::vector<VehicleSeries> follow_vehicles(const std::vector<FleetFlight>& flights,
+                                           const std::vector<std::string>& common) {
+  const std::vector<fleet::Vehicle> vehicles = fleet::group_vehicles(flights);
+  std::vector<FleetFlight> held;
+  if (!common.empty()) {
+    const fleet::Parting parting = fleet::part(flights, common);
+    held = fleet::hold_common(flights, parting,
+                              fleet::find_common(flights, vehicles, parting).told.values);
+  }
   std::vector<VehicleSeries> all;
-  for (const fleet::Vehicle& vehicle : fleet::group_vehicles(flights)) {
-    all.push_back(follow_vehicle(flights, vehicle));
+  for (const fleet::Vehicle& vehicle : vehicles) {
+    all.push_back(follow_vehicle(common.empty() ? flights : held, vehicle));
   }
   for (VehicleSeries& series : all) {
     series.p_adjusted =

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "fleet/common.hpp"
 #include "sepcal/error.hpp"
 
 namespace sepcal {
@@ -68,6 +69,14 @@ TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const
   return all;
 }
 
+std::string rate_name(const std::string& parameter, const std::string& attribute) {
+  return parameter + "[" + attribute + "]";
+}
+
+std::string rate_unit(const std::string& unit, const std::string& attribute) {
+  return (unit.empty() ? "1" : unit) + "/" + attribute;
+}
+
 Told tell(const TriangularFactor& rows, const VectorXd& reference) {
   const Index p = reference.size();
   const MatrixXd& T = rows.matrix();
@@ -88,19 +97,14 @@ Told tell(const TriangularFactor& rows, const VectorXd& reference) {
   return told;
 }
 
-MatrixXd jackknife(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
-                   const VectorXd& reference) {
-  const Index p = reference.size();
-  const std::size_t n = vehicle.flights.size();
+MatrixXd jackknife(const std::vector<TriangularFactor>& parts) {
+  const Index p = parts.front().columns() - 1;
+  const std::size_t n = parts.size();
   MatrixXd undefined = MatrixXd::Constant(p, p, not_a_number);
   if (n < 3) return undefined;
-  std::vector<TriangularFactor> before{TriangularFactor(static_cast<int>(p) + 1)};
-  std::vector<TriangularFactor> own;
-  for (const std::size_t i : vehicle.flights) {
-    own.push_back(parameter_rows(flights[i].factor, reference));
-    before.push_back(sum(before.back(), own.back()));
-  }
-  TriangularFactor after(static_cast<int>(p) + 1);
+  std::vector<TriangularFactor> before{TriangularFactor(parts.front().columns())};
+  for (const TriangularFactor& one : parts) before.push_back(sum(before.back(), one));
+  TriangularFactor after(parts.front().columns());
   MatrixXd estimates(p, static_cast<Index>(n));
   for (std::size_t i = n; i-- > 0;) {
     const TriangularFactor others = sum(before[i], after);
@@ -108,7 +112,7 @@ MatrixXd jackknife(const std::vector<FleetFlight>& flights, const Vehicle& vehic
     const TriangularSolution solution = solve_triangular(T.topLeftCorner(p, p), T.col(p).head(p));
     if (solution.rank < p) return undefined;
     estimates.col(static_cast<Index>(i)) = solution.x;
-    after.merge(own[i]);
+    after.merge(parts[i]);
   }
   const MatrixXd off = estimates.colwise() - estimates.rowwise().mean();
   const auto count = static_cast<double>(n);
@@ -117,19 +121,98 @@ MatrixXd jackknife(const std::vector<FleetFlight>& flights, const Vehicle& vehic
 
 }  // namespace fleet
 
-std::vector<VehicleFit> fit_vehicles(const std::vector<FleetFlight>& flights) {
+namespace {
+
+/// From the vehicle's flights alone.
+VehicleFit fit_vehicle(const std::vector<FleetFlight>& flights, const fleet::Vehicle& vehicle) {
+  const VectorXd& reference = flights[vehicle.flights.front()].factor.values;
+  std::vector<TriangularFactor> own;
+  VehicleFit fit{.vehicle = vehicle.name, .flights = vehicle.flights.size()};
+  TriangularFactor all(static_cast<int>(reference.size()) + 1);
+  for (const std::size_t i : vehicle.flights) {
+    own.push_back(fleet::parameter_rows(flights[i].factor, reference));
+    all.merge(own.back());
+    fit.readings += flights[i].factor.readings;
+  }
+  fleet::Told told = fleet::tell(all, reference);
+  fit.values = std::move(told.values);
+  fit.covariance = std::move(told.covariance);
+  fit.jackknife = fleet::jackknife(own);
+  fit.misfit = remaining_square(all);
+  return fit;
+}
+
+/// What a vehicle's own parameters move by as the common ones do, -R_11^-1 R_12 (own x common).
+MatrixXd slope_of(const MatrixXd& T, const fleet::Parting& parting) {
+  std::vector<Index> order = parting.own;
+  order.insert(order.end(), parting.common.begin(), parting.common.end());
+  MatrixXd rows = T(Eigen::all, order);
+  TriangularFactor factor(static_cast<int>(rows.cols()));
+  factor.absorb(rows);
+  const auto own = std::ssize(parting.own);
+  const auto common = std::ssize(parting.common);
+  return -generalised_inverse(factor.matrix().topLeftCorner(own, own)) *
+         factor.matrix().topRows(own).rightCols(common);
+}
+
+/// An error of own parameters, with what that of common ones adds.
+MatrixXd with_common(const MatrixXd& own, const MatrixXd& common, const MatrixXd& slope,
+                     const fleet::Parting& parting) {
+  MatrixXd all(own.rows() + common.rows(), own.rows() + common.rows());
+  all(parting.own, parting.own) = own + slope * common * slope.transpose();
+  all(parting.own, parting.common) = slope * common;
+  all(parting.common, parting.own) = common * slope.transpose();
+  all(parting.common, parting.common) = common;
+  return all;
+}
+
+}  // namespace
+
+FlightFactor with_rate(const FlightFactor& factor, const std::string& parameter,
+                       const std::string& attribute, double distance) {
+  const auto at = std::ranges::find(factor.parameters, parameter);
+  if (at == factor.parameters.end()) {
+    throw Error("the fleet has no parameter '" + parameter + "'");
+  }
+  const Index k = at - factor.parameters.begin();
+  const Index p = std::ssize(factor.parameters);
+  const MatrixXd& T = factor.triangle;
+  MatrixXd rows(T.rows(), T.cols() + 1);
+  rows << T.leftCols(p), T.col(k) * distance, T.rightCols(T.cols() - p);
+  TriangularFactor triangle(static_cast<int>(rows.cols()));
+  triangle.absorb(rows);
+  FlightFactor grown = factor;
+  grown.parameters.push_back(fleet::rate_name(parameter, attribute));
+  grown.units.push_back(fleet::rate_unit(factor.units[static_cast<std::size_t>(k)], attribute));
+  grown.values.conservativeResize(p + 1);
+  grown.values[p] = 0.0;
+  grown.triangle = triangle.matrix();
+  return grown;
+}
+
+std::vector<VehicleFit> fit_vehicles(const std::vector<FleetFlight>& flights,
+                                     const std::vector<std::string>& common) {
+  const std::vector<fleet::Vehicle> vehicles = fleet::group_vehicles(flights);
   std::vector<VehicleFit> fits;
-  for (const fleet::Vehicle& vehicle : fleet::group_vehicles(flights)) {
-    const VectorXd reference = flights[vehicle.flights.front()].factor.values;
-    const TriangularFactor rows = fleet::merge_parameters(flights, vehicle, reference);
-    fleet::Told told = fleet::tell(rows, reference);
-    VehicleFit fit{.vehicle = vehicle.name,
-                   .flights = vehicle.flights.size(),
-                   .values = std::move(told.values),
-                   .covariance = std::move(told.covariance),
-                   .jackknife = fleet::jackknife(flights, vehicle, reference),
-                   .misfit = remaining_square(rows)};
-    for (const std::size_t i : vehicle.flights) fit.readings += flights[i].factor.readings;
+  if (common.empty()) {
+    for (const fleet::Vehicle& vehicle : vehicles) fits.push_back(fit_vehicle(flights, vehicle));
+    return fits;
+  }
+  const fleet::Parting parting = fleet::part(flights, common);
+  const auto [told, jackknife] = fleet::find_common(flights, vehicles, parting);
+  if (!told.values.allFinite()) throw Error("no flight tells what is common to all");
+  const std::vector<FleetFlight> held = fleet::hold_common(flights, parting, told.values);
+  for (const fleet::Vehicle& vehicle : vehicles) {
+    VehicleFit fit = fit_vehicle(held, vehicle);
+    const VectorXd& reference = flights.front().factor.values;
+    const TriangularFactor all = fleet::merge_parameters(flights, vehicle, reference);
+    const MatrixXd slope = slope_of(all.matrix().leftCols(reference.size()), parting);
+    VectorXd values(reference.size());
+    values(parting.own) = fit.values;
+    values(parting.common) = told.values;
+    fit.values = std::move(values);
+    fit.covariance = with_common(fit.covariance, told.covariance, slope, parting);
+    fit.jackknife = with_common(fit.jackknife, jackknife, slope, parting);
     fits.push_back(std::move(fit));
   }
   return fits;

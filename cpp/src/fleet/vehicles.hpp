@@ -33,6 +33,10 @@ TriangularFactor sum(const TriangularFactor& a, const TriangularFactor& b);
 TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
                                   const Eigen::VectorXd& reference);
 
+/// Of a parameter that grows with an attribute: "s_va[age_days]", "1/age_days".
+std::string rate_name(const std::string& parameter, const std::string& attribute);
+std::string rate_unit(const std::string& unit, const std::string& attribute);
+
 /// Parameters and their covariance; NaN for what the rows do not tell.
 struct Told {
   Eigen::VectorXd values;
@@ -42,9 +46,9 @@ struct Told {
 /// What rows [parameters | residual] at `reference` say.
 Told tell(const TriangularFactor& rows, const Eigen::VectorXd& reference);
 
-/// Of a vehicle, by leaving out each of its flights: (n - 1)/n sum of squares about their mean; NaN
-/// for fewer than three flights, and where what is left does not tell.
-Eigen::MatrixXd jackknife(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
-                          const Eigen::VectorXd& reference);
+/// By leaving out each of some rows [parameters | residual], of flights say: (n - 1)/n sum of
+/// squares of the estimates about their mean; NaN for fewer than three, and where what is left does
+/// not tell.
+Eigen::MatrixXd jackknife(const std::vector<TriangularFactor>& parts);
 
 }  // namespace sepcal::fleet

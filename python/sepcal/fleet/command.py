@@ -49,6 +49,10 @@ def add_to(commands: Verbs[argparse.ArgumentParser]) -> None:
         help="a parameter that each flight has for itself [w_n, w_e, w_d]",
     )  # fmt: skip
     verb.add_argument(
+        "--common", action="append", metavar="NAME", default=[],
+        help="a parameter that all vehicles share [none]",
+    )  # fmt: skip
+    verb.add_argument(
         "--only", action="append", metavar="EFFECT",
         help="a candidate to be tested [all that are linear]",
     )  # fmt: skip
@@ -72,6 +76,9 @@ def add_to(commands: Verbs[argparse.ArgumentParser]) -> None:
     verb = _add(verbs, "add", _add_effect, "the fleet with one more effect in every flight")
     _add_folder(verb)
     verb.add_argument("effect", metavar="EFFECT", help="as diagnose names it")
+    verb.add_argument(
+        "--common", action="store_true", help="one coefficient for all vehicles [each has its own]"
+    )
     _add_output(verb)
     _add_cluster(verb)
     verb = _add(verbs, "population", _population, "how parameters spread over vehicles")
@@ -169,6 +176,7 @@ def _fit(given: argparse.Namespace) -> int:
             given.logs or None,
             _base_of(given.like),
             own=given.own,
+            common=given.common,
             names=given.names,
             table=given.table,
             share=given.share,
@@ -200,7 +208,7 @@ def _add_effect(given: argparse.Namespace) -> int:
     if os.path.abspath(given.output) == os.path.abspath(given.folder):
         raise _core.Error("-o names the fleet itself; give another folder")
     with _cluster(given) as cluster:
-        fleet = _opened(given, cluster).add(given.effect, store=given.output)
+        fleet = _opened(given, cluster).add(given.effect, common=given.common, store=given.output)
         fleet.save(given.output)
     _show(given, fleet)
     return 0

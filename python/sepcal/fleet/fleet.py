@@ -19,10 +19,11 @@ from sepcal.fit_options import FitOptions
 from sepcal.fitting import fit
 from sepcal.fleet.comparison import FleetComparison, compare_groups
 from sepcal.fleet.findings import FleetDiagnosis
+from sepcal.fleet.growth import Growth, growth_of
 from sepcal.fleet.kept import SCHEMA, fleet_json, write_files
 from sepcal.fleet.logs import Log, find_logs
 from sepcal.fleet.monitoring import Monitoring, watch
-from sepcal.fleet.passes import Fitted, FleetFlight, Way, fit_flights, mean_centres
+from sepcal.fleet.passes import Fitted, FleetFlight, Sharing, Way, fit_flights, mean_centres
 from sepcal.fleet.populations import Population
 from sepcal.fleet.store import Store
 from sepcal.fleet.visiting import read_log
@@ -58,6 +59,7 @@ class Fleet:
         like: Calibration | AnyModel,
         *,
         own: Sequence[str] | None = None,
+        common: Sequence[str] = (),
         names: str | None = None,
         table: str | os.PathLike[str] | None = None,
         share: str = "vehicle",
@@ -76,6 +78,7 @@ class Fleet:
             like: A calibration, as whose every flight is calibrated, with its options and effects;
                 or a probe, and `options` as of fit().
             own: Parameters that each flight has for itself [the wind, where the probe has one].
+            common: Parameters that all vehicles share.
             names: What stands in the logs' names: "{vehicle}/{date}_*.ulg". `vehicle` is the group
                 that shares parameters [the folder], `date` makes flights age, other numbers are
                 attributes that parameters may grow with, other words are what flights are compared
@@ -98,6 +101,7 @@ class Fleet:
         self._like = like
         self._options = options
         self._own = None if own is None else tuple(to_names("own", own))
+        self._sharing = Sharing(tuple(to_names("common", common)))
         self._candidates = None if candidates is None else tuple(to_names("candidates", candidates))
         self._way = Way(cluster, None if store is None else Store(store), progress, tolerance)
         self._base: Calibration | None = like if isinstance(like, Calibration) else None
@@ -154,6 +158,8 @@ class Fleet:
             fleet._like = fleet._base = base
             fleet._options = {}
             fleet._own = tuple(told["own"])
+            growths = (Growth(**one) for one in told["growths"])
+            fleet._sharing = Sharing(tuple(told["common"]), tuple(growths))
             fleet._candidates = None if told["candidates"] is None else tuple(told["candidates"])
             fleet._way = Way(cluster, Store(folder), None, float(told["tolerance"]))
             fleet.added = list(told["added"])
@@ -196,7 +202,9 @@ class Fleet:
     def fitted(self) -> Fitted:
         """What came of the logs, which are visited when it is first asked for."""
         if self._fitted is None:
-            self._fitted = fit_flights(self.logs, self.base, self.own, self._candidates, self._way)
+            self._fitted = fit_flights(
+                self.logs, self.base, self.own, self._candidates, self._sharing, self._way
+            )
             self._fitted.left_out |= self._misnamed
         return self._fitted
 
@@ -219,6 +227,11 @@ class Fleet:
     def parameters(self) -> list[str]:
         """The vehicles' parameters, by name, in the order of their values."""
         return list(next(iter(self.flights.values())).factor.parameters)
+
+    @property
+    def common(self) -> list[str]:
+        """Of these, those that have one value for the whole fleet."""
+        return self._sharing.common
 
     def _asked(self) -> list[tuple[str, str, _core.FlightFactor, dict[str, float]]]:
         return [flight.asked() for flight in self.flights.values()]
@@ -261,13 +274,21 @@ class Fleet:
             []
         """
         _check_significance(significance)
-        return FleetDiagnosis(_core.diagnose_fleet(self._asked(), significance, most))
+        return FleetDiagnosis(_core.diagnose_fleet(self._asked(), significance, most, self.common))
 
-    def add(self, effect: str | Effect, *, store: str | os.PathLike[str] | None = None) -> Fleet:
-        """The fleet with one more effect in every flight, each vehicle with its own coefficient.
+    def add(
+        self,
+        effect: str | Effect,
+        *,
+        common: bool = False,
+        store: str | os.PathLike[str] | None = None,
+    ) -> Fleet:
+        """The fleet with one more effect in every flight.
 
         Args:
-            effect: As diagnose() names it, or one of your own.
+            effect: As diagnose() names it, or one of your own. "s_va[age_days]", a parameter and an
+                attribute: it grows, at one rate for the fleet.
+            common: One coefficient for all vehicles; else each has its own.
             store: A folder that keeps what is done [the fleet's own].
 
         Raises:
@@ -276,13 +297,11 @@ class Fleet:
         Example:
             >>> files = sepcal.datasets.write_fleet(folder)
             >>> fleet = sepcal.Fleet(folder, sepcal.PitotStatic(), names="{vehicle}_{date}.csv")
-            >>> (step,) = fleet.add("pressure_offset").added
+            >>> (step,) = fleet.add("pressure_offset", common=True).added
             >>> step["flights"]
             12
         """
-        first = self._read_base_flight()
-        grown = about_centres(self.base.add(effect, first), mean_centres(self.flights))
-        fleet = self._of(self.logs, grown)
+        fleet = self._with(effect, common)
         if store is not None:
             fleet._way = replace(self._way, store=Store(store))
         name = effect.name if isinstance(effect, Effect) else effect
@@ -302,6 +321,26 @@ class Fleet:
         ]
         return fleet
 
+    def _with(self, effect: str | Effect, common: bool) -> Fleet:
+        """The fleet with the effect, not fitted yet."""
+        attributes = [flight.log.attributes for flight in self.flights.values()]
+        growth = growth_of(str(effect), self.parameters, attributes)
+        if growth:
+            if growth.name in self.common:
+                raise _core.Error(f"the fleet has {in_line(growth.name)} already")
+            fleet = self._of(self.logs, self.base)
+            growths = (*self._sharing.growths, growth)
+            fleet._sharing = replace(self._sharing, growths=growths)
+            return fleet
+        first = self._read_base_flight()
+        grown = about_centres(self.base.add(effect, first), mean_centres(self.flights))
+        fleet = self._of(self.logs, grown)
+        if common:
+            new = [name for name in grown.names if name not in self.base.names]
+            shared = (*self._sharing.parameters, *new)
+            fleet._sharing = replace(self._sharing, parameters=shared)
+        return fleet
+
     def population(self, *, correlated: bool = False) -> Population:
         """How the parameters spread over vehicles, and each vehicle's shrunken estimates.
 
@@ -317,8 +356,8 @@ class Fleet:
             >>> list(fleet.population().spread)
             ['s_va', 'c_va']
         """
-        found = _core.fit_population(self._asked(), correlated, np.zeros(0))
-        return Population(found, self.base)
+        found = _core.fit_population(self._asked(), correlated, np.zeros(0), self.common)
+        return Population(found, self.base, tuple(self.common))
 
     def monitor(self, *, significance: float = 0.01) -> Monitoring:
         """Each vehicle's parameters from flight to flight: control limits, changes, who departs.
@@ -332,7 +371,7 @@ class Fleet:
             ()
         """
         _check_significance(significance)
-        return watch(list(self.flights.values()), self.parameters, significance)
+        return watch(list(self.flights.values()), self.parameters, self.common, significance)
 
     # How it is done
 

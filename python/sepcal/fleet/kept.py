@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from sepcal.fleet.logs import as_json
@@ -28,6 +29,7 @@ def fleet_json(fleet: Fleet) -> str:
         "model": fleet.base.core.model,
         "own": list(fleet.own),
         "added": fleet.added,
+        "common": list(fleet.common),
         "flights": [
             {
                 **as_json(flight.log),
@@ -73,6 +75,8 @@ def write_files(fleet: Fleet, folder: str | os.PathLike[str]) -> None:
         "candidates": None if fleet._candidates is None else list(fleet._candidates),
         "tolerance": fleet._way.tolerance,
         "added": fleet.added,
+        "common": list(fleet._sharing.parameters),
+        "growths": [asdict(growth) for growth in fleet._sharing.growths],
     }
     write_bytes(os.path.join(place, "setup.json"), json.dumps(setup, indent=1).encode())
     write_bytes(os.path.join(place, "fleet.json"), text.encode())

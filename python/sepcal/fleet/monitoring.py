@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
@@ -143,14 +143,18 @@ class Monitoring:
 
 
 def watch(
-    flights: Sequence[FleetFlight], parameters: Sequence[str], significance: float
+    flights: Sequence[FleetFlight],
+    parameters: Sequence[str],
+    common: Sequence[str],
+    significance: float,
 ) -> Monitoring:
-    """Flights of each vehicle in the order of their ages, or as they come."""
+    """Flights of each vehicle in the order of their ages, or as they come; of its own parameters."""
     order = sorted(
         range(len(flights)),
         key=lambda i: (flights[i].log.vehicle, flights[i].log.attributes.get(AGE, 0.0), i),
     )
-    series = _core.follow_vehicles([flights[i].asked() for i in order])
+    series = _core.follow_vehicles([flights[i].asked() for i in order], common)
+    own = {name: k for k, name in enumerate(parameters) if name not in common}
     changes = [
         Change(
             one.vehicle,
@@ -167,7 +171,7 @@ def watch(
     outside = []
     for one in series:
         values, errors = np.asarray(one.values), np.asarray(one.errors)
-        for k, name in enumerate(parameters):
+        for k, name in enumerate(own):
             known = np.isfinite(values[k]) & (errors[k] > 0)
             if known.sum() < 3:
                 continue
@@ -179,9 +183,9 @@ def watch(
                 distance = float((values[k, i] - mean) / spread[i])
                 if abs(distance) > LIMIT:
                     outside.append((one.vehicle, one.flights[i], name, distance))
-    departures = _departures([flights[i] for i in order], parameters)
+    departures = _departures([flights[i] for i in order], own, common)
     return Monitoring(
-        tuple(parameters),
+        tuple(own),
         tuple(series),
         tuple(changes),
         tuple(departures),
@@ -190,9 +194,14 @@ def watch(
     )
 
 
-def _departures(flights: Sequence[FleetFlight], parameters: Sequence[str]) -> list[Departure]:
-    """Of each vehicle, against what the others spread by, its own error being added."""
-    fits = _core.fit_vehicles([flight.asked() for flight in flights])
+def _departures(
+    flights: Sequence[FleetFlight], own: Mapping[str, int], common: Sequence[str]
+) -> list[Departure]:
+    """Of each vehicle, against what the others spread by, its own error being added.
+
+    `own`: the vehicles' parameters, and their places.
+    """
+    fits = _core.fit_vehicles([flight.asked() for flight in flights], common)
     if len(fits) < 4:
         return []
     found: list[Departure] = []
@@ -203,10 +212,10 @@ def _departures(flights: Sequence[FleetFlight], parameters: Sequence[str]) -> li
             for fit in fits
         ]
     )
-    tests = values.size
+    tests = len(fits) * len(own)
     for v, fit in enumerate(fits):
         best: Departure | None = None
-        for k, name in enumerate(parameters):
+        for name, k in own.items():
             others = [i for i in range(len(fits)) if i != v and np.isfinite(values[i, k])]
             if len(others) < 3 or not np.isfinite(values[v, k]):
                 continue

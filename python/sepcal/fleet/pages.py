@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sepcal import _core
 from sepcal.fleet.passes import vehicle_error
 from sepcal.printing import aligned, in_line
 
@@ -25,6 +27,7 @@ def fleet_page(fleet: Fleet) -> str:
     lines = [
         f"{len(flights)} flights of {len(vehicles)} vehicles, each with parameters of its own; "
         f"own to each flight: {', '.join(fleet.own) or 'none'}.",
+        *_common(fleet),
         f"Misfit per reading of a typical flight, of noise alone 1: {misfit:.3g}.",
         "",
     ]
@@ -32,15 +35,15 @@ def fleet_page(fleet: Fleet) -> str:
         lines.insert(
             2, "One vehicle: tell vehicles apart by a field {vehicle} of --names, or by folders."
         )
-    if len(fleet.parameters) > MOST_COLUMNS:
-        return "\n".join([*lines, *_by_parameter(fleet), *_rest(fleet)])
-    rows = [["vehicle", "flights", *fleet.parameters]]
+    own = {name: k for k, name in enumerate(fleet.parameters) if name not in fleet.common}
+    if len(own) > MOST_COLUMNS:
+        return "\n".join([*lines, *_by_parameter(fleet, own), *_rest(fleet)])
+    rows = [["vehicle", "flights", *own]]
     for name, fit in list(vehicles.items())[:MOST_VEHICLES]:
         cells = []
-        for k in range(len(fleet.parameters)):
-            error = vehicle_error(fit, k)
+        for k in own.values():
             told = np.isfinite(fit.values[k])
-            cells.append(f"{fit.values[k]:.5g} +- {error:.2g}" if told else "not told")
+            cells.append(_with_error(fit, k) if told else "not told")
         rows.append([in_line(name), str(fit.flights), *cells])
     lines += aligned(rows)
     if len(vehicles) > MOST_VEHICLES:
@@ -48,11 +51,25 @@ def fleet_page(fleet: Fleet) -> str:
     return "\n".join([*lines, *_rest(fleet)])
 
 
-def _by_parameter(fleet: Fleet) -> list[str]:
+def _with_error(fit: _core.VehicleFit, k: int) -> str:
+    return f"{fit.values[k]:.5g} +- {vehicle_error(fit, k):.2g}"
+
+
+def _common(fleet: Fleet) -> list[str]:
+    """What all vehicles share."""
+    fit = next(iter(fleet.vehicles.values()))
+    sizes = [
+        in_line(f"{name} = {_with_error(fit, fleet.parameters.index(name))}")
+        for name in fleet.common
+    ]
+    return [f"The same in all vehicles: {', '.join(sizes)}."] if sizes else []
+
+
+def _by_parameter(fleet: Fleet, own: Mapping[str, int]) -> list[str]:
     """Too many for a column each: a row each, over all vehicles."""
     rows = [["parameter", "median", "smallest", "largest", "its vehicle", "typical error"]]
     fits = list(fleet.vehicles.values())
-    for k, name in enumerate(fleet.parameters):
+    for name, k in own.items():
         values = np.array([fit.values[k] for fit in fits])
         known = np.flatnonzero(np.isfinite(values))
         if not known.size:

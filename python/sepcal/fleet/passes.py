@@ -15,6 +15,7 @@ from sepcal import _core
 from sepcal.calibration import Calibration
 from sepcal.columns import Array
 from sepcal.executors import Executors, describe, stream
+from sepcal.fleet.growth import Growth, in_flight, with_rates
 from sepcal.fleet.logs import Log
 from sepcal.fleet.store import Store
 from sepcal.fleet.visiting import Question, Visit, visit
@@ -57,10 +58,24 @@ class Way:
     tolerance: float = 0.01  # of a vehicle's standard error, at which its parameters stay
 
 
+@dataclass(frozen=True)
+class Sharing:
+    """What all vehicles share."""
+
+    parameters: tuple[str, ...] = ()
+    growths: tuple[Growth, ...] = ()
+
+    @property
+    def common(self) -> list[str]:
+        """Parameters and rates that have one value for the fleet."""
+        return [*self.parameters, *(growth.name for growth in self.growths)]
+
+
 @dataclass
 class Fitted:
     """What came of it."""
 
+    sharing: Sharing = field(default_factory=Sharing)
     flights: dict[str, FleetFlight] = field(default_factory=dict)  # by name, in the logs' order
     left_out: dict[str, str] = field(default_factory=dict)  # why, by name
     vehicles: list[_core.VehicleFit] = field(default_factory=list)  # of these flights
@@ -73,10 +88,11 @@ def fit_flights(
     base: Calibration,
     own: tuple[str, ...],
     candidates: tuple[str, ...] | None,
+    sharing: Sharing,
     way: Way,
 ) -> Fitted:
     """Visits the logs. Raises Error where none can be used."""
-    fitted = Fitted()
+    fitted = Fitted(sharing)
     kind = kind_of(base.core.model)
     asked = {log.name: Question(base, kind, own, log.name, log.file, candidates) for log in logs}
     _take(logs, _visit(asked, "calibrating each flight", way, fitted), fitted)
@@ -91,7 +107,11 @@ def fit_flights(
             name: replace(
                 asked[name],
                 candidates=tuple(named),
-                at=dict(zip(parameters, map(float, values[one.log.vehicle]), strict=True)),
+                at=in_flight(
+                    dict(zip(parameters, map(float, values[one.log.vehicle]), strict=True)),
+                    sharing.growths,
+                    one.log.attributes,
+                ),
                 centres=centres,
                 calibration=one.calibration,
             )
@@ -117,9 +137,9 @@ def _take(logs: Sequence[Log], visits: Mapping[str, Visit], fitted: Fitted) -> N
         if other != name:
             fitted.left_out[name] = f"its bytes are those of {other}"
             continue
-        flights[name] = FleetFlight(
-            by_name[name], answer.calibration, answer.factor, answer.sha256, answer.rows
-        )
+        log = by_name[name]
+        factor = with_rates(answer.factor, fitted.sharing.growths, log.attributes)
+        flights[name] = FleetFlight(log, answer.calibration, factor, answer.sha256, answer.rows)
     if not flights:
         reason = next(iter(fitted.left_out.values()))
         raise _core.Error(f"no log can be used; of the first: {in_line(reason)}")
@@ -128,7 +148,9 @@ def _take(logs: Sequence[Log], visits: Mapping[str, Visit], fitted: Fitted) -> N
         fitted.left_out[name] = "it has other parameters than the first flight"
         del flights[name]
     fitted.flights = flights
-    fitted.vehicles = _core.fit_vehicles([flight.asked() for flight in flights.values()])
+    fitted.vehicles = _core.fit_vehicles(
+        [flight.asked() for flight in flights.values()], fitted.sharing.common
+    )
 
 
 def _vehicle_values(fitted: Fitted) -> dict[str, Array]:

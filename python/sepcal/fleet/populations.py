@@ -31,9 +31,12 @@ class Population:
         True
     """
 
-    def __init__(self, core: _core.Population, base: Calibration) -> None:
+    def __init__(
+        self, core: _core.Population, base: Calibration, common: tuple[str, ...] = ()
+    ) -> None:
         self.core = core
         self.base = base
+        self.common = common  # parameters that have one value for all
         self.parameters: list[str] = list(core.parameters)
         self.vehicles: list[str] = list(core.vehicles)
 
@@ -81,6 +84,7 @@ class Population:
         return {
             name: (float(self.core.mean[k]), float(np.sqrt(variances[k])))
             for k, name in enumerate(self.parameters)
+            if name in self.base.names  # a rate is the fleet's: at the mean of its attribute
         }
 
     def calibrate(self, flight: AnyFlight) -> Calibration:
@@ -138,7 +142,8 @@ class Population:
         rows = [["parameter", "mean", "std. error", "spread between vehicles"]]
         for name in self.parameters:
             value, error = self.mean[name]
-            rows.append([name, f"{value:.6g}", f"{error:.2g}", f"{self.spread[name]:.3g}"])
+            spread = "the same in all" if name in self.common else f"{self.spread[name]:.3g}"
+            rows.append([name, f"{value:.6g}", f"{error:.2g}", spread])
         lines = [f"{len(self.vehicles)} vehicles, by restricted maximum likelihood.", ""]
         if not self.core.converged:
             lines.insert(1, "The search did not converge.")

@@ -113,6 +113,8 @@ def _vehicles(fleet: Fleet) -> Section:
     vehicles = list(fleet.vehicles.values())
     figures = []
     for k, name in enumerate(fleet.parameters):
+        if name in fleet.common:
+            continue
         values = np.array([fit.values[k] for fit in vehicles])
         errors = np.array([vehicle_error(fit, k) for fit in vehicles])
         order = np.argsort(values)

@@ -75,6 +75,7 @@ Fit fit_rest_in_time(const AircraftFit& fitted, LaidAircraft& laid) {
     if (std::ranges::find(own, parameter.name, &Variable::name) == own.end()) continue;
     options.fix[parameter.name] = parameter.value;
     options.start.erase(parameter.name);
+    options.prior.erase(parameter.name);
   }
   return fit(*laid.model, laid.record, options);
 }
@@ -270,8 +271,10 @@ Fit aircraft_log::fit_on(const Flight& flight, const AircraftFit& fitted, LaidAi
       options.fix[parameter.name] = parameter.value;
     }
   }
-  std::erase_if(options.start,
-                [&](const auto& entry) { return options.fix.contains(entry.first); });
+  for (const auto& [name, value] : options.fix) {
+    options.start.erase(name);
+    options.prior.erase(name);
+  }
   if (fitted.fit.method == FitMethod::filter_error) {
     options.process_noise = fitted.fit.process_noise();
     for (const OutputValue& noise : fitted.fit.noise) options.noise[noise.name] = noise.value;

@@ -52,6 +52,7 @@ StreamStart with_own(const Calibration& calibration, const EffectiveFlight& effe
     if (std::ranges::find(options.own, name) == options.own.end()) {
       fit.fix[name] = start.xi[static_cast<Index>(k)];
       fit.bounds.erase(name);
+      fit.prior.erase(name);
     }
   }
   const StreamStart found =

@@ -76,7 +76,10 @@ Calibration along(const Calibration& given, PreparedFlight& prepared) {
   for (const Parameter& one : given.fit.parameters) {
     if (!is_initial(one.name)) fit.fix[one.name] = one.value;
   }
-  std::erase_if(fit.start, [&](const auto& entry) { return fit.fix.contains(entry.first); });
+  for (const auto& [name, value] : fit.fix) {
+    fit.start.erase(name);
+    fit.prior.erase(name);
+  }
   for (const OutputValue& noise : given.fit.noise) fit.noise[noise.name] = noise.value;
   fit.stage_one_segments.clear();
   fit.stage_two_segments.clear();
