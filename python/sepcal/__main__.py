@@ -100,9 +100,11 @@ def run_here(words: Sequence[str]) -> int:
     """A command of the package alone."""
     parser, _ = make_parser()
     asked = "sepcal"
+    kept = "no file was written"
     try:
         try:
             chosen = parser.parse_args(words)
+            kept = getattr(chosen, "kept", kept)
             asked += " " + " ".join(filter(None, (chosen.command, getattr(chosen, "verb", None))))
             return int(chosen.run(chosen))
         finally:
@@ -119,7 +121,7 @@ def run_here(words: Sequence[str]) -> int:
     except _core.Error as error:
         return refuse(f"{asked}: {getattr(error, 'as_typed', error)}")
     except KeyboardInterrupt:
-        tell(f"{asked}: stopped by Ctrl-C; no file was written")
+        tell(f"{asked}: stopped by Ctrl-C; {kept}")
         return INTERRUPTED
 
 

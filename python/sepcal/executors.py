@@ -200,6 +200,9 @@ class _Pool:
         if self._make is not None and isinstance(self.executor, ProcessPoolExecutor):
             for process in list((self.executor._processes or {}).values()):
                 process.terminate()
+            self.executor.shutdown(
+                wait=True
+            )  # its thread fails on work that is cancelled meanwhile
 
 
 def _stream(

@@ -7,6 +7,8 @@ import json
 import os
 import shutil
 import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -220,6 +222,27 @@ def test_a_filesystem_that_fails_now_and_then(remote: str, fleet: sepcal.Fleet) 
     assert other.left_out == {}
 
 
+def test_ctrl_c_ends_a_run_in_one_line(folder: Path, tmp_path: Path) -> None:
+    """On processes too, whatever they are at; what was done is kept."""
+    for log in folder.glob("*.csv"):
+        for copy in range(12):
+            shutil.copy(log, tmp_path / f"{log.stem.replace('_', f'-{copy}_')}.csv")
+    sepcal.fit(sepcal.PitotStatic(), next(folder.glob("*.csv"))).save(tmp_path / "base.json")
+    words = ["fleet", "fit", "*.csv", "--like", "base.json", "--names", NAMES, "-o", "kept"]
+    run = subprocess.Popen(
+        [sys.executable, "-m", "sepcal", *words, "--processes", "2"], cwd=tmp_path, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+    )  # fmt: skip
+    while run.poll() is None and not list((tmp_path / "kept").glob("answers/*")):
+        time.sleep(0.01)
+    os.killpg(run.pid, signal.SIGINT)
+    told, error = run.communicate(timeout=60)
+    assert (run.returncode, told) == (130, "")
+    assert error == (
+        "sepcal fleet fit: stopped by Ctrl-C; the same command goes on with what is done\n"
+    )
+
+
 def test_a_run_is_taken_up_where_it_ended(
     folder: Path, fleet: sepcal.Fleet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -368,6 +391,10 @@ def test_unknown_groups_are_named(fleet: sepcal.Fleet) -> None:
     with pytest.raises(sepcal.Error, match="nothing is called 'colour'; there is: age_days"):
         fleet.compare("colour")
     assert len(fleet.compare("age_days").groups) == 3
+    means = sorted(sepcal.read(one.log.file)["vn_mps"].mean() for one in fleet.flights.values())
+    by_channel = fleet.compare("vn_mps").groups
+    assert [group.flights for group in by_channel] == [3, 2, 2, 2, 3]
+    assert by_channel[0].name.startswith(f"{means[0]:.4g} to ")
     assert len(fleet.compare("flight").groups) == 12
 
 

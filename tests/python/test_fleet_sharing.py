@@ -116,11 +116,11 @@ def test_a_vehicle_whose_common_parameter_differs_is_named() -> None:
     spread = np.array([1.0, 1.0, 0.0])
     wrong, named = 0, 0
     for _ in range(20):
-        asked, _, rows = draw_fleet(rng, vehicles=vehicles, spread=spread, wander=0.05)
+        asked, _, _ = draw_fleet(rng, vehicles=vehicles, spread=spread, wander=0.05)
         found = sepcal.FleetDiagnosis(_core.diagnose_fleet(asked, 0.01, 8, ["p2"]))
         wrong += found.exit_code != 0
         moved = []
-        for (name, vehicle, factor, known), (J, *_) in zip(asked, rows, strict=True):
+        for name, vehicle, factor, known in asked:
             shift = 0.8 if vehicle == "v7" else 0.0
             values = np.asarray(factor.values).copy()
             values[2] += shift  # as if all readings had been taken with so much more of it

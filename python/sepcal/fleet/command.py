@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -132,6 +133,12 @@ def _add_cluster(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--dask", metavar="ADDRESS", help="on a Dask cluster: the scheduler's, tcp://host:8786"
     )
+    verb.set_defaults(kept="the same command goes on with what is done")
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C is the first process's to hear, which ends the others."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextmanager
@@ -141,7 +148,7 @@ def _cluster(given: argparse.Namespace) -> Iterator[Executors]:
     if given.processes is not None:
         if given.processes < 1:
             raise _core.Error(f"--processes {given.processes}: give at least 1")
-        yield partial(ProcessPoolExecutor, given.processes)
+        yield partial(ProcessPoolExecutor, given.processes, initializer=_leave_interrupts)
         return
     if not given.dask:
         yield None

@@ -143,23 +143,16 @@ def _keys(flights: Sequence[FleetFlight], by: str) -> list[str]:
         return _fifths(numbers, by)
     known = {*labels, "flight", "vehicle"}
     known |= {name for flight in flights for name in flight.log.attributes}
-    known |= {_driver(effect) for flight in flights for effect in flight.factor.centres}
+    known |= {channel for flight in flights for channel in flight.means}
     if any(read_date(flight.log.labels.get("date", "")) for flight in flights):
         known.add("month")
     raise _core.Error(f"nothing is called '{in_line(by)}'; there is: {', '.join(sorted(known))}")
 
 
-def _driver(effect: str) -> str:
-    return effect.rpartition("[")[2].rstrip("]").partition("^")[0]
-
-
 def _number_of(flight: FleetFlight, by: str) -> float | None:
-    if by in flight.log.attributes:
-        return float(flight.log.attributes[by])
-    for effect, centre in flight.factor.centres.items():
-        if _driver(effect) == by:
-            return float(centre)
-    return None
+    """An attribute, or a channel's mean."""
+    number = flight.log.attributes.get(by, flight.means.get(by))
+    return None if number is None else float(number)
 
 
 def _fifths(numbers: Sequence[float | None], by: str) -> list[str]:

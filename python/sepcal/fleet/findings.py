@@ -70,9 +70,10 @@ class FleetDiagnosis(_core.FleetDiagnosis):
                 f"{self.misfit_after:.4g} with all of these "
                 f"({self.tests} tests, {self.flights} flights, {self.vehicles} vehicles).",
             ]
-        if self.others:
+        near = [one for one in self.others if one.p_adjusted < 1.0][:5]
+        if near:
             lines += ["", "Beside these, the surest of the others:"]
-            lines += [f"  {sentence_of(one)}" for one in self.others[:5]]
+            lines += [f"  {sentence_of(one)}" for one in near]
         return "\n".join([*lines, *self.notes])
 
 

@@ -148,7 +148,7 @@ def watch(
     common: Sequence[str],
     significance: float,
 ) -> Monitoring:
-    """Flights of each vehicle in the order of their ages, or as they come; of its own parameters."""
+    """A vehicle's own parameters, its flights in the order of their ages, or as they come."""
     order = sorted(
         range(len(flights)),
         key=lambda i: (flights[i].log.vehicle, flights[i].log.attributes.get(AGE, 0.0), i),

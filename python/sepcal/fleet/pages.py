@@ -46,6 +46,8 @@ def fleet_page(fleet: Fleet) -> str:
             cells.append(_with_error(fit, k) if told else "not told")
         rows.append([in_line(name), str(fit.flights), *cells])
     lines += aligned(rows)
+    if any("not told" in row for row in rows):
+        lines.append("not told: its flights don't show it, or their error wanders too much for it.")
     if len(vehicles) > MOST_VEHICLES:
         lines.append(f"... and {len(vehicles) - MOST_VEHICLES} more")
     return "\n".join([*lines, *_rest(fleet)])
@@ -100,7 +102,7 @@ def _rest(fleet: Fleet) -> list[str]:
             f"{step['rmse_after']:.4g}, in {step['flights_better']} of {step['flights']} flights.",
         ]
     if fleet.left_out:
-        lines += ["", f"Left out: {len(fleet.left_out)} logs."]
+        lines += ["", f"Left out: {len(fleet.left_out)} log{'s' * (len(fleet.left_out) > 1)}."]
         lines += [
             f"  {in_line(name)}: {in_line(reason)}"
             for name, reason in list(fleet.left_out.items())[:5]

@@ -36,6 +36,7 @@ class FleetFlight:
     factor: _core.FlightFactor
     sha256: str
     rows: int
+    means: Mapping[str, float]  # of the log's channels
 
     @property
     def misfit(self) -> float:
@@ -139,7 +140,9 @@ def _take(logs: Sequence[Log], visits: Mapping[str, Visit], fitted: Fitted) -> N
             continue
         log = by_name[name]
         factor = with_rates(answer.factor, fitted.sharing.growths, log.attributes)
-        flights[name] = FleetFlight(log, answer.calibration, factor, answer.sha256, answer.rows)
+        flights[name] = FleetFlight(
+            log, answer.calibration, factor, answer.sha256, answer.rows, answer.means
+        )
     if not flights:
         reason = next(iter(fitted.left_out.values()))
         raise _core.Error(f"no log can be used; of the first: {in_line(reason)}")

@@ -138,12 +138,24 @@ class Population:
         }
         return json.dumps(told, indent=2) + "\n"
 
+    def spread_in_words(self, name: str) -> str:
+        """A parameter's spread as pages show it.
+
+        Example:
+            >>> files = sepcal.datasets.write_fleet(folder)
+            >>> fleet = sepcal.Fleet(folder, sepcal.PitotStatic(), names="{vehicle}_{date}.csv")
+            >>> fleet.add("pressure_offset", common=True).population().spread_in_words(
+            ...     "pressure_offset.s"
+            ... )
+            'the same in all'
+        """
+        return "the same in all" if name in self.common else f"{self.spread[name]:.3g}"
+
     def __str__(self) -> str:
         rows = [["parameter", "mean", "std. error", "spread between vehicles"]]
         for name in self.parameters:
             value, error = self.mean[name]
-            spread = "the same in all" if name in self.common else f"{self.spread[name]:.3g}"
-            rows.append([name, f"{value:.6g}", f"{error:.2g}", spread])
+            rows.append([name, f"{value:.6g}", f"{error:.2g}", self.spread_in_words(name)])
         lines = [f"{len(self.vehicles)} vehicles, by restricted maximum likelihood.", ""]
         if not self.core.converged:
             lines.insert(1, "The search did not converge.")

@@ -110,6 +110,7 @@ class Store:
             "rows": visit.rows,
             "seconds": visit.seconds,
             "bytes_read": visit.bytes_read,
+            "means": dict(visit.means),
             "factor": fields,
         }
         content = io.BytesIO()

@@ -16,6 +16,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from sepcal import _core
 from sepcal.calibration import Calibration, parse
 from sepcal.fleet.logs import filesystem_of, is_url
@@ -55,6 +57,7 @@ class Visit:
     rows: int = 0
     seconds: float = 0.0  # of CPU
     bytes_read: int = 0
+    means: Mapping[str, float] = field(default_factory=dict)  # of the log's channels
 
 
 @contextmanager
@@ -104,7 +107,19 @@ def visit(question: Question) -> Visit:
         flight.rows,
         time.thread_time() - begun,
         size,
+        channel_means(flight),
     )
+
+
+def channel_means(flight: Flight) -> dict[str, float]:
+    """Of each column but time, over the rows that have a number."""
+    means = {}
+    for header in flight:
+        values = flight[header]
+        known = values[np.isfinite(values)]
+        if known.size and header != "time_s":
+            means[header] = float(known.mean())
+    return means
 
 
 def read_log(file: str, kind: str) -> tuple[Flight, str, int]:
