@@ -42,6 +42,13 @@ HIDDEN = (
     "airspeed_scale[flap]",
 )
 AGE = 365.0  # days, over which a vehicle's flights are spread
+SEASON, WEATHER = 10.0, 4.0  # K, of flights about the year's mean
+WARM = {  # candidates, and what each is in a flight at one temperature
+    "airspeed_scale[temp_k]": "s_va",
+    "airspeed_bias[temp_k]": "c_va",
+    "pressure_offset[temp_k]": "pressure_offset",
+}
+DRIFT = 0.01  # of the scale, over the year or the season's amplitude
 LEVEL = 0.01
 WHITE = 0.15  # m/s, the airspeed's noise in simulate()
 
@@ -123,10 +130,12 @@ def draw(
     everywhere: dict[str, float] | None = None,
     in_vehicles: tuple[str, float, Sequence[int]] | None = None,
     ages: dict[str, float] | None = None,
+    seasons: bool = False,
     thetas: list[Array] | None = None,
 ) -> list[tuple[str, str, _core.FlightFactor, dict[str, float]]]:
     """A fleet: what is hidden in all, in some vehicles, or grows with a flight's age.
 
+    With `seasons` flights are as warm as the time of the year has it, and as the weather has it.
     `thetas` takes each vehicle's parameters, less those that the pool was reduced at.
     """
     p = len(pool.factors[0].parameters)
@@ -142,6 +151,11 @@ def draw(
             age = float(rng.uniform(0.0, AGE))
             theta = moved + np.array([(ages or {}).get(name, 0.0) * age for name in names])
             T[:, -1] = rng.choice([-1.0, 1.0]) * T[:, -1] + T[:, :p] @ theta
+            if seasons:
+                warmer = SEASON * np.sin(2.0 * np.pi * age / AGE) + WEATHER * rng.standard_normal()
+                for effect, name in WARM.items():  # about the mean of the fleet
+                    constant = names.index(name) if name in names else pool.columns(name)[0]
+                    T[:, pool.columns(effect)[0]] += warmer * T[:, constant]
             hidden = dict(everywhere or {})
             if in_vehicles and vehicle in in_vehicles[2]:
                 hidden[in_vehicles[0]] = in_vehicles[1]
@@ -181,14 +195,16 @@ def run_one(seed: int, pool: Pool, kind: str, errors: dict[str, float]) -> tuple
         named = {one.vehicle for one in found if one.vehicle}
         wanted = {f"v{vehicle:02d}" for vehicle in chosen}
         return named == wanted, sum(one.effect != effect for one in found)
-    # A scale that ages, or one that follows temperature: by what takes as much.
+    # A scale that ages, or one that follows the temperature, where both go with the season.
+    by_age, by_warmth = "s_va[age_days]", "airspeed_scale[temp_k]"
     if kind == "ages":
-        found = _core.diagnose_fleet(
-            draw(pool, rng, ages={"s_va": sign * 0.01 / AGE}), LEVEL, 8
-        ).found
-        first = found[0].effect if found else ""
-        return first == "s_va[age_days]", len(found) - 1
-    raise AssertionError(kind)
+        fleet = draw(pool, rng, ages={"s_va": sign * DRIFT / AGE}, seasons=True)
+    else:
+        fleet = draw(pool, rng, everywhere={by_warmth: sign * DRIFT / SEASON}, seasons=True)
+    cause, other = (by_age, by_warmth) if kind == "ages" else (by_warmth, by_age)
+    found = _core.diagnose_fleet(fleet, LEVEL, 8).found
+    named = [one.effect for one in found]
+    return cause in named[:1] and other not in named, len(found) - 1
 
 
 def apart(seed: int, wanders: bool, effect: str, size: float) -> float:
@@ -260,7 +276,7 @@ def run(arguments: argparse.Namespace, progress: Progress) -> Outcome:
     numbers = seed_range(arguments)
     findings = []
     words = []
-    kinds = ("nothing", "everywhere", "vehicles", "ages")
+    kinds = ("nothing", "everywhere", "vehicles", "ages", "warmth")
     for place, wanders in enumerate((False, True)):
         noise = "wandering" if wanders else "white"
         pool = make_pool(wanders, arguments.processes)
@@ -293,7 +309,8 @@ def run(arguments: argparse.Namespace, progress: Progress) -> Outcome:
                 "nothing": "nothing hidden, nothing found",
                 "everywhere": "a fifth of what a flight shows, found",
                 "vehicles": "three vehicles named, and no other",
-                "ages": "a scale that ages, told first",
+                "ages": "a scale that ages, told from the temperature",
+                "warmth": "a scale that follows the temperature, told from age",
             }[kind]
             least = math.ceil((0.98 if kind == "nothing" else 0.95) * n)
             findings.append(

@@ -164,6 +164,22 @@ def test_the_bits_do_not_depend_on_the_workers(
     assert bits_of(other) == bits_of(fleet)
 
 
+@pytest.mark.slow
+def test_a_cluster_that_grows_with_the_work(folder: Path, fleet: sepcal.Fleet) -> None:
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(
+            n_workers=0, threads_per_worker=1, dashboard_address=None, protocol="tcp://"
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        cluster.adapt(minimum=0, maximum=2, interval="200ms")
+        grown = sepcal.Fleet(
+            folder, sepcal.PitotStatic(), names=NAMES, cluster=client.get_executor()
+        )
+        assert bits_of(grown) == bits_of(fleet)
+
+
 def test_a_worker_is_killed_on_the_way(
     folder: Path, fleet: sepcal.Fleet, tmp_path: Path, client: Any
 ) -> None:
