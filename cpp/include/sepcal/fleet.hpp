@@ -42,6 +42,7 @@ struct FlightFactor {
   double rmse = not_a_number;  // over all outputs, at the point, in their unit where they have one
 };
 
+/// How a flight is reduced.
 struct ReduceOptions {
   std::vector<std::string> own = {};         // parameters of the flight alone
   std::map<std::string, double> at = {};     // of others; what is not named stays as it was fitted
@@ -98,6 +99,7 @@ struct Population {
   bool converged = false;
 };
 
+/// What a population is taken to be.
 struct PopulationOptions {
   bool correlated = false;  // a full spread; else a diagonal one
   /// By what the noise models' variances are multiplied (p); empty: as leaving out flights has it,
@@ -165,6 +167,7 @@ struct FleetFinding {
                                           // within 9.2
 };
 
+/// What a fleet lacks, and what is left with it.
 struct FleetDiagnosis {
   std::vector<FleetFinding> found = {};   // in the order in which they were added
   std::vector<FleetFinding> others = {};  // beside those: the surest of each candidate, best first
@@ -178,6 +181,7 @@ struct FleetDiagnosis {
   std::vector<std::string> notes = {};
 };
 
+/// How a fleet is diagnosed.
 struct FleetDiagnosisOptions {
   double significance = 0.01;  // for the fleet, after correction, shared among the causes
   int most = 8;                // findings
