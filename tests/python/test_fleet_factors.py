@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 from scipy.stats import binom, kstest
 
 import sepcal
-from fleet_factors import Array, draw_fleet, make_factor
+from fleet_factors import Array, Asked, draw_fleet, make_factor
 from sepcal import _core
 
 P = 3
@@ -195,6 +195,30 @@ def test_nothing_is_found_in_noise_that_wanders() -> None:
         asked, _, _ = draw_fleet(rng, vehicles=10, flights=5, wander=0.3 * (seed % 2))
         false += bool(_core.diagnose_fleet(asked, 0.01, 8).found)
     assert binom.sf(false - 1, 200, 0.01) > 1e-3
+
+
+def draw_alike(seed: int) -> list[Asked]:
+    """Six vehicles of four flights, eight candidates of three causes, and what is none of these."""
+    rng = np.random.default_rng([20, seed])
+    mix = rng.standard_normal((3, 8))
+    asked = []
+    for v in range(6):
+        theta = rng.standard_normal(2)
+        for f in range(4):
+            J = np.column_stack([rng.standard_normal((60, 2))[:, 0], np.ones(60)])
+            causes = rng.standard_normal((60, 3))
+            G = causes @ mix + 0.15 * rng.standard_normal((60, 8))
+            z = J @ theta + causes**2 @ [0.3, 0.3, 0.1] + rng.standard_normal(60)
+            z += 0.5 * causes[:, 0] * (1.0 + 0.5 * rng.standard_normal())
+            z += 0.09 * G @ rng.standard_normal(8)
+            asked.append((f"f{v}-{f}", f"v{v}", make_factor(J, G, z, np.zeros(2)), {}))
+    return asked
+
+
+def test_causes_that_are_alike_end_the_search() -> None:
+    """One takes another's place, which explains nothing then: it must not come back for ever."""
+    for seed in range(60):
+        assert len(_core.diagnose_fleet(draw_alike(seed), 0.01, 8).found) <= 8
 
 
 def test_a_change_is_dated_and_chance_is_none() -> None:

@@ -89,6 +89,7 @@ class Recipe {
   std::optional<Tested> test_differences(std::size_t group, const VehicleScores& vehicles) const;
   bool is_accepted(const Group& group) const;
   bool is_common(const Group& group) const;
+  bool is_eliminated(const Group& group) const;
   std::vector<Tested> test_all() const;
   void add(const Tested& best);
   void eliminate(double number);
@@ -195,6 +196,10 @@ void Recipe::estimate() {
 
 bool Recipe::is_accepted(const Group& group) const {
   return std::ranges::find(accepted_, group.columns.front()) != accepted_.end();
+}
+
+bool Recipe::is_eliminated(const Group& group) const {
+  return std::ranges::find(eliminated_, group.effect) != eliminated_.end();
 }
 
 /// Of what the model has already.
@@ -381,7 +386,7 @@ std::vector<Tested> Recipe::test_all() const {
   for (std::size_t g = 0; g < scores_.groups().size(); ++g) {
     if (std::ranges::find(differing_, g) != differing_.end()) continue;
     const Group& group = scores_.groups()[g];
-    if (std::ranges::find(eliminated_, group.effect) != eliminated_.end()) continue;
+    if (is_eliminated(group)) continue;
     const VehicleScores asked = ask_vehicles(group);
     if (!is_accepted(group)) {
       if (auto tested = test_everywhere(g, asked)) fleet.push_back(std::move(*tested));
@@ -507,6 +512,7 @@ bool Recipe::exchange() {
       for (std::size_t g = 0; g < scores_.groups().size(); ++g) {
         if (std::ranges::find(accepted, g) != accepted.end()) continue;
         if (std::ranges::find(differing_, g) != differing_.end()) continue;
+        if (is_eliminated(scores_.groups()[g])) continue;  // or it would come and go for ever
         const double then = explained(columns_with(leaving, g));
         if (then <= most) continue;
         most = then;
