@@ -114,9 +114,8 @@ def stacked(
 
 
 def test_a_vehicle_is_scipys_fit_of_all_its_rows(folder: Path) -> None:
-    """Rows weighed as their triangles have it; noise is white where that is one number."""
+    """Rows weighed by what each flight leaves."""
     fleet = sepcal.Fleet(folder, sepcal.PitotStatic(), names=NAMES, candidates=[], tolerance=1e-7)
-    compared = 0
     for vehicle, fit in fleet.vehicles.items():
         flights = [one for one in fleet.flights.values() if one.log.vehicle == vehicle]
         columns = [sepcal.read(one.log.file) for one in flights]
@@ -130,10 +129,8 @@ def test_a_vehicle_is_scipys_fit_of_all_its_rows(folder: Path) -> None:
             upper = np.linalg.qr(J[:, [2, 3, 0, 1]], mode="r")[2:, 2:]
             gram = np.asarray(one.factor.triangle)[:2, :2]
             ratio = (gram.T @ gram) / (upper.T @ upper)
-            weights.append(np.sqrt(ratio[0, 0]) if np.ptp(ratio) < 1e-5 * ratio[0, 0] else np.nan)
-        if np.isnan(weights).any():
-            continue  # its noise has a memory
-        compared += 1
+            assert_allclose(ratio, ratio[0, 0], rtol=1e-5)
+            weights.append(np.sqrt(ratio[0, 0]))
 
         start = [*fit.values]
         for one in flights:
@@ -143,7 +140,6 @@ def test_a_vehicle_is_scipys_fit_of_all_its_rows(folder: Path) -> None:
         )
         errors = np.sqrt(np.diag(np.asarray(fit.covariance)))
         assert_allclose(np.asarray(fit.values), best.x[:2], rtol=0, atol=1e-5 * errors.min())
-    assert compared >= 2
 
 
 @pytest.mark.parametrize("workers", ["one thread", "threads", "processes", "dask"])
@@ -433,9 +429,7 @@ def test_a_change_and_a_departure_ring(tmp_path: Path) -> None:
     assert "V5: s_va changes" in fleet_report(few)
 
 
-def test_factors_are_whitened_by_the_flights_own_noise(fleet: sepcal.Fleet) -> None:
-    misfits = [flight.misfit for flight in fleet.flights.values()]
-    assert 0.8 < np.median(misfits) < 2.0
+def test_a_factor_comes_back_from_its_fields(fleet: sepcal.Fleet) -> None:
     factor = next(iter(fleet.flights.values())).factor
     made = _core.FlightFactor.__new__(_core.FlightFactor)
     made.__setstate__(tuple(getattr(factor, name) for name in factor._fields))

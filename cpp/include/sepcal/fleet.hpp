@@ -27,17 +27,18 @@ struct CandidateColumn {
   friend bool operator==(const CandidateColumn&, const CandidateColumn&) = default;
 };
 
-/// A flight at a point, whitened by its own noise, its own parameters projected out. To first order
-/// |T [theta - values; gamma; -1]|^2 is its misfit (-2 ln L) with parameters theta and candidates'
-/// coefficients gamma.
+/// A flight at a point, in units of its own residual, its own parameters projected out. To first
+/// order |T [theta - values; gamma; -1]|^2 is its misfit (-2 ln L, as white noise has it) with
+/// parameters theta and candidates' coefficients gamma.
 struct FlightFactor {
-  std::vector<std::string> parameters = {};    // p, without those of the flight alone
-  std::vector<std::string> units = {};         // p
-  Eigen::VectorXd values = {};                 // p, where it was linearised
-  std::vector<CandidateColumn> columns = {};   // c
-  Eigen::MatrixXd triangle = {};               // (p + c + 1)^2, upper
-  double readings = 0.0;                       // behind it, less own parameters
-  std::map<std::string, double> own = {};      // estimates of the flight's own, at `values`
+  std::vector<std::string> parameters = {};   // p, without those of the flight alone
+  std::vector<std::string> units = {};        // p
+  Eigen::VectorXd values = {};                // p, where it was linearised
+  std::vector<CandidateColumn> columns = {};  // c
+  Eigen::MatrixXd triangle = {};              // (p + c + 1)^2, upper
+  Eigen::VectorXd inflation = {};          // p: of variances, where the flight's noise has a memory
+  double readings = 0.0;                   // behind it, less own parameters
+  std::map<std::string, double> own = {};  // estimates of the flight's own, at `values`
   std::map<std::string, double> centres = {};  // of drivers that go about one: effect's, by name
   double rmse = not_a_number;  // over all outputs, at the point, in their unit where they have one
 };
@@ -73,7 +74,8 @@ struct VehicleFit {
   std::string vehicle;
   std::size_t flights = 0;
   Eigen::VectorXd values = {};      // p; NaN where its flights do not tell
-  Eigen::MatrixXd covariance = {};  // p x p, as its noise models have it: (R'R)^-1
+  Eigen::VectorXd inflation = {};   // p: of variances, as its flights' noise models have it
+  Eigen::MatrixXd covariance = {};  // p x p, (R'R)^-1 with that
   Eigen::MatrixXd jackknife = {};   // p x p, by leaving out a flight each; NaN for fewer than three
   double misfit = 0.0;              // -2 ln L, a chi-squared of `readings` less what was estimated
   double readings = 0.0;

@@ -70,7 +70,7 @@ void set_coefficients(FleetFinding& finding, const ByName& all) {
 void define_results_of_fleets(py::module_& module) {
   BoundStruct<FlightFactor>(
       module, "FlightFactor",
-      "A flight at a point, in units of its own noise, its own parameters projected out.")
+      "A flight at a point, in units of its own residual, its own parameters projected out.")
       .field("parameters", &FlightFactor::parameters, "p names.")
       .field("units", &FlightFactor::units, "")
       .field("values", &FlightFactor::values, "Where it was linearised (p).")
@@ -78,6 +78,8 @@ void define_results_of_fleets(py::module_& module) {
              "(effect, coefficient, unit, whether it stands in for another cause) of each, c.")
       .field("triangle", &FlightFactor::triangle,
              "[parameters | columns | residual], upper, (p + c + 1) square.")
+      .field("inflation", &FlightFactor::inflation,
+             "Of variances, where the flight's noise has a memory (p).")
       .field("readings", &FlightFactor::readings, "Behind it, less the flight's own parameters.")
       .field("own", &FlightFactor::own, "Estimates of the flight's own parameters.")
       .field("centres", &FlightFactor::centres, "By effect, of what its driver goes about.")
@@ -87,6 +89,8 @@ void define_results_of_fleets(py::module_& module) {
       .field("vehicle", &VehicleFit::vehicle, "")
       .field("flights", &VehicleFit::flights, "How many.")
       .field("values", &VehicleFit::values, "NaN where its flights do not tell.")
+      .field("inflation", &VehicleFit::inflation,
+             "Of variances, as its flights' noise models have it (p).")
       .field("covariance", &VehicleFit::covariance, "As the noise models have it.")
       .field("jackknife", &VehicleFit::jackknife,
              "By leaving out a flight each; NaN for fewer than three.")

@@ -10,6 +10,7 @@
 #include <ceres/gradient_problem_solver.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "fleet/common.hpp"
 #include "fleet/vehicles.hpp"
@@ -154,20 +155,21 @@ MatrixXd spread_covariance(const std::vector<MatrixXd>& B,
   return information.completeOrthogonalDecomposition().pseudoInverse();
 }
 
-/// By what leaving out flights exceeds the noise models' variances: the median over vehicles, not
-/// below 1.
+/// By what variances exceed those of white noise: the mean over vehicles of what leaving out
+/// flights shows, not below 1; where fewer than three show it, as noise models have it.
 VectorXd measured_inflation(const std::vector<VehicleFit>& fits, Index p) {
-  VectorXd inflation = VectorXd::Ones(p);
+  VectorXd inflation(p);
   for (Index k = 0; k < p; ++k) {
-    std::vector<double> ratios;
+    std::vector<double> shown;
+    double modelled = 0.0;
     for (const VehicleFit& fit : fits) {
-      const double ratio = fit.jackknife(k, k) / fit.covariance(k, k);
-      if (std::isfinite(ratio)) ratios.push_back(ratio);
+      modelled += fit.inflation[k] / static_cast<double>(fits.size());
+      const double ratio = fit.inflation[k] * fit.jackknife(k, k) / fit.covariance(k, k);
+      if (std::isfinite(ratio)) shown.push_back(ratio);
     }
-    if (ratios.size() < 3) continue;
-    double mean = 0.0;
-    for (const double ratio : ratios) mean += ratio / static_cast<double>(ratios.size());
-    inflation[k] = std::max(1.0, mean);
+    const double mean =
+        std::accumulate(shown.begin(), shown.end(), 0.0) / static_cast<double>(shown.size());
+    inflation[k] = shown.size() < 3 ? modelled : std::max(1.0, mean);
   }
   return inflation;
 }

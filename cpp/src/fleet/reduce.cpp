@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flight's rows [own | parameters | candidates | residual], whitened by the noise of its own
-// residual, in one triangle; below its own parameters' rows stands what the fleet needs.
+// A flight's rows [own | parameters | candidates | residual], each output in units of its own
+// residual, in one triangle; below its own parameters' rows stands what the fleet needs. Rows are
+// not whitened: filtered against a residual that wanders, a model with noisy inputs (gusts in a
+// velocity) is fitted where these are loudest, and its scale comes out too small.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "base/thread_pool.hpp"
 #include "diagnosis/candidate.hpp"
 #include "diagnosis/held_out.hpp"
-#include "diagnosis/null_hypothesis.hpp"
 #include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fleet.hpp"
@@ -24,11 +24,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The noise of each output's residual, as it was first found, and the unit that it is of.
-struct FlightNoise {
-  std::vector<Whitener> whiteners;
-  std::vector<double> scales;
-};
+/// Each output's residual, as it was first found.
+using Scales = std::vector<double>;
 
 /// The fit with what bounds held freed, and at the values that are given.
 DiagnosedFit moved(const DiagnosedFit& fitted, const std::map<std::string, double>& at) {
@@ -86,10 +83,9 @@ class Visit {
     return room_.fit().parameters[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])];
   }
 
-  /// [own | parameters | candidates | residual], in units of the flight's noise, which is found
+  /// [own | parameters | candidates | residual], in units of the flight's residual, which is found
   /// where it is not known yet.
-  TriangularFactor factor(const std::vector<Candidate>& candidates,
-                          std::optional<FlightNoise>& noise) const {
+  TriangularFactor factor(const std::vector<Candidate>& candidates, Scales& scales) const {
     const RowLayout& layout = room_.fit().layout;
     if (layout.outputs.empty()) {
       throw Error("the model leaves nothing of this flight: it has no noise to be weighed by");
@@ -100,17 +96,14 @@ class Visit {
     }
     MatrixXd rows(layout.count(), all.cols() + 1);
     rows << all.dense(layout), room_.fit().residual;
-    if (!noise) {
-      noise.emplace(find_null(room_.fit()).whiteners, std::vector<double>{});
-      for (const UsedOutput& output : layout.outputs) noise->scales.push_back(output.scale);
+    if (scales.empty()) {
+      for (const UsedOutput& output : layout.outputs) scales.push_back(output.scale);
     }
-    if (noise->scales.size() != layout.outputs.size()) {
+    if (scales.size() != layout.outputs.size()) {
       throw Error("an output's residual is zero at one point and not at another");
     }
     for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-      auto own_rows = rows.middleRows(layout.first(j), layout.rows);
-      own_rows *= layout.outputs[j].scale / noise->scales[j];
-      noise->whiteners[j].apply(own_rows);
+      rows.middleRows(layout.first(j), layout.rows) *= layout.outputs[j].scale / scales[j];
     }
     TriangularFactor factor(static_cast<int>(rows.cols()));
     factor.absorb(rows);
@@ -126,14 +119,14 @@ class Visit {
 
 /// Moves the flight's own parameters to their best at the others' values.
 void settle_own(DiagnosedFit& there, const std::vector<std::string>& own, base::ThreadPool& pool,
-                std::optional<FlightNoise>& noise) {
+                Scales& scales) {
   constexpr int most_steps = 30;
   constexpr double small = 1e-9;  // |step| in standard errors
   for (int step = 0; step < most_steps; ++step) {
     const Visit visit(there, own, pool);
     const Index n = visit.n_own();
     if (n == 0) return;
-    const MatrixXd T = visit.factor({}, noise).matrix();
+    const MatrixXd T = visit.factor({}, scales).matrix();
     const VectorXd q = T.col(T.cols() - 1).head(n);
     if (q.norm() < small) return;
     const VectorXd change = solve_triangular(T.topLeftCorner(n, n), q).x;
@@ -143,28 +136,32 @@ void settle_own(DiagnosedFit& there, const std::vector<std::string>& own, base::
   }
 }
 
+/// By what an error to be believed exceeds that of white noise, as a factor of variances.
+double inflation_of(const Parameter& parameter) {
+  const double ratio = parameter.standard_error / parameter.standard_error_white;
+  return std::isfinite(ratio) ? std::max(1.0, ratio * ratio) : 1.0;
+}
+
 }  // namespace
 
 FlightFactor reduce(const DiagnosedFit& fitted, const ReduceOptions& options) {
   base::ThreadPool pool(1);
   DiagnosedFit there = moved(fitted, options.at);
-  std::optional<FlightNoise> noise;
-  settle_own(there, options.own, pool, noise);
+  Scales scales;
+  settle_own(there, options.own, pool, scales);
   Visit visit(there, options.own, pool);
   const std::vector<Candidate> candidates = make_linear(visit.room(), options);
-  const TriangularFactor factor = visit.factor(candidates, noise);
+  const TriangularFactor factor = visit.factor(candidates, scales);
   const Index own = visit.n_own();
   const Index below = factor.columns() - own;
   const RowLayout& layout = visit.room().fit().layout;
 
-  Index readings = -own;
-  if (noise) {
-    for (const Whitener& whitener : noise->whiteners) readings += whitener.informative_rows();
-  }
+  const Index readings = layout.count() - own;
   FlightFactor reduced{.triangle = factor.matrix().bottomRightCorner(below, below),
                        .readings = static_cast<double>(readings),
                        .rmse = total_rmse(layout, visit.room().fit().residual)};
   reduced.values.resize(visit.parameters());
+  reduced.inflation.resize(visit.parameters());
   for (Index k = 0; k < own + visit.parameters(); ++k) {
     const Parameter& parameter = there.fit[visit.name(k)];
     if (k < own) {
@@ -173,6 +170,7 @@ FlightFactor reduce(const DiagnosedFit& fitted, const ReduceOptions& options) {
       reduced.parameters.push_back(parameter.name);
       reduced.units.push_back(parameter.unit);
       reduced.values[k - own] = parameter.value;
+      reduced.inflation[k - own] = inflation_of(fitted.fit[parameter.name]);
     }
   }
   for (const Candidate& candidate : candidates) {

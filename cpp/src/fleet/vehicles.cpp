@@ -2,6 +2,7 @@
 #include "fleet/vehicles.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -41,6 +42,9 @@ std::vector<Vehicle> group_vehicles(const std::vector<FleetFlight>& flights) {
     if (!names.insert(flight.name).second) {
       throw Error("two flights are called '" + flight.name + "'");
     }
+    if (flight.factor.inflation.size() != flight.factor.values.size()) {
+      throw Error("flight '" + flight.name + "' has an inflation for each of its parameters");
+    }
     if (flight.factor.parameters != flights.front().factor.parameters) {
       throw Error("flight '" + flight.name + "' has other parameters than '" +
                   flights.front().name + "'");
@@ -67,6 +71,13 @@ TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const
     all.merge(parameter_rows(flights[i].factor, reference));
   }
   return all;
+}
+
+VectorXd mean_inflation(const std::vector<FleetFlight>& flights,
+                        const std::vector<std::size_t>& places) {
+  VectorXd sum = VectorXd::Zero(flights.front().factor.values.size());
+  for (const std::size_t i : places) sum += flights[i].factor.inflation;
+  return sum / static_cast<double>(places.size());
 }
 
 std::string rate_name(const std::string& parameter, const std::string& attribute) {
@@ -127,7 +138,9 @@ namespace {
 VehicleFit fit_vehicle(const std::vector<FleetFlight>& flights, const fleet::Vehicle& vehicle) {
   const VectorXd& reference = flights[vehicle.flights.front()].factor.values;
   std::vector<TriangularFactor> own;
-  VehicleFit fit{.vehicle = vehicle.name, .flights = vehicle.flights.size()};
+  VehicleFit fit{.vehicle = vehicle.name,
+                 .flights = vehicle.flights.size(),
+                 .inflation = fleet::mean_inflation(flights, vehicle.flights)};
   TriangularFactor all(static_cast<int>(reference.size()) + 1);
   for (const std::size_t i : vehicle.flights) {
     own.push_back(fleet::parameter_rows(flights[i].factor, reference));
@@ -136,7 +149,8 @@ VehicleFit fit_vehicle(const std::vector<FleetFlight>& flights, const fleet::Veh
   }
   fleet::Told told = fleet::tell(all, reference);
   fit.values = std::move(told.values);
-  fit.covariance = std::move(told.covariance);
+  const auto errors = fit.inflation.cwiseSqrt().asDiagonal();
+  fit.covariance = errors * told.covariance * errors;
   fit.jackknife = fleet::jackknife(own);
   fit.misfit = remaining_square(all);
   return fit;
@@ -186,6 +200,8 @@ FlightFactor with_rate(const FlightFactor& factor, const std::string& parameter,
   grown.units.push_back(fleet::rate_unit(factor.units[static_cast<std::size_t>(k)], attribute));
   grown.values.conservativeResize(p + 1);
   grown.values[p] = 0.0;
+  grown.inflation.conservativeResize(p + 1);
+  grown.inflation[p] = factor.inflation[k];
   grown.triangle = triangle.matrix();
   return grown;
 }
@@ -201,6 +217,11 @@ std::vector<VehicleFit> fit_vehicles(const std::vector<FleetFlight>& flights,
   const fleet::Parting parting = fleet::part(flights, common);
   const auto [told, jackknife] = fleet::find_common(flights, vehicles, parting);
   if (!told.values.allFinite()) throw Error("no flight tells what is common to all");
+  std::vector<std::size_t> every(flights.size());
+  std::iota(every.begin(), every.end(), std::size_t{0});
+  const VectorXd inflation = fleet::mean_inflation(flights, every);
+  const auto errors = inflation(parting.common).cwiseSqrt().eval().asDiagonal();
+  const MatrixXd covariance = errors * told.covariance * errors;
   const std::vector<FleetFlight> held = fleet::hold_common(flights, parting, told.values);
   for (const fleet::Vehicle& vehicle : vehicles) {
     VehicleFit fit = fit_vehicle(held, vehicle);
@@ -211,7 +232,10 @@ std::vector<VehicleFit> fit_vehicles(const std::vector<FleetFlight>& flights,
     values(parting.own) = fit.values;
     values(parting.common) = told.values;
     fit.values = std::move(values);
-    fit.covariance = with_common(fit.covariance, told.covariance, slope, parting);
+    fit.covariance = with_common(fit.covariance, covariance, slope, parting);
+    const VectorXd own = fit.inflation;
+    fit.inflation = inflation;
+    fit.inflation(parting.own) = own;
     fit.jackknife = with_common(fit.jackknife, jackknife, slope, parting);
     fits.push_back(std::move(fit));
   }

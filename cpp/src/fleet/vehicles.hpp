@@ -33,6 +33,10 @@ TriangularFactor sum(const TriangularFactor& a, const TriangularFactor& b);
 TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
                                   const Eigen::VectorXd& reference);
 
+/// Of these flights (p).
+Eigen::VectorXd mean_inflation(const std::vector<FleetFlight>& flights,
+                               const std::vector<std::size_t>& places);
+
 /// Of a parameter that grows with an attribute: "s_va[age_days]", "1/age_days".
 std::string rate_name(const std::string& parameter, const std::string& attribute);
 std::string rate_unit(const std::string& unit, const std::string& attribute);

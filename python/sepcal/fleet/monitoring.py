@@ -123,7 +123,12 @@ class Monitoring:
         if names:
             lines.append(f"Vehicles that depart from the others: {', '.join(map(in_line, names))}.")
         else:
-            lines.append(f"No vehicle departs from the others (p below {self.significance:g}).")
+            lines.append(
+                f"No vehicle departs from the others for sure (p below {self.significance:g}); the "
+                "farthest come first."
+                if self.departures
+                else "Fewer than four vehicles do not show which of them departs."
+            )
         rows = [["vehicle", "parameter", "value", "others", "distance", "p"]]
         rows += [
             [

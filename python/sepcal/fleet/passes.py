@@ -40,7 +40,7 @@ class FleetFlight:
 
     @property
     def misfit(self) -> float:
-        """-2 ln L per reading at the vehicle's parameters; 1: noise alone."""
+        """-2 ln L per reading at the vehicle's parameters; 1: what the flight alone leaves."""
         square = float(np.sum(np.asarray(self.factor.triangle)[:, -1] ** 2))
         return square / float(self.factor.readings)
 

@@ -105,6 +105,7 @@ class Store:
         fields = dict(factor._asdict())
         values = np.asarray(fields.pop("values"))
         triangle = np.asarray(fields.pop("triangle"))
+        fields["inflation"] = np.asarray(fields["inflation"]).tolist()
         told = {
             "calibration": visit.calibration,
             "rows": visit.rows,
