@@ -31,6 +31,7 @@ def make_factor(
             "values": values,
             "columns": [(name, name, "m", False) for name in names],
             "triangle": triangle,
+            "whitened": np.zeros((0, 0)),
             "inflation": np.ones(J.shape[1]),
             "readings": float(len(residual)),
             "own": {},

@@ -51,18 +51,22 @@ WARM = {  # candidates, and what each is in a flight at one temperature
 DRIFT = 0.01  # of the scale, over the year or the season's amplitude
 LEVEL = 0.01
 WHITE = 0.15  # m/s, the airspeed's noise in simulate()
+NOISES: dict[str, dict[str, tuple[float, float]]] = {  # beside white noise: size [m/s], memory [s]
+    "white": {},
+    "wandering": {"airspeed_mps": (WHITE, 60.0), "vn_mps": (0.1, 60.0), "ve_mps": (0.1, 60.0)},
+    "gusty": {"vn_mps": (0.25, 3.0), "ve_mps": (0.25, 3.0)},  # of air that the wind has not
+}
 
 
-def fly(seed: int, wanders: bool, hide: dict[str, float] | None = None) -> sepcal.Flight:
+def fly(seed: int, noise: str, hide: dict[str, float] | None = None) -> sepcal.Flight:
     """A flight; what wanders is added to what was simulated."""
     rng = np.random.default_rng([seed, 45])
     wind = {"w_n": float(rng.normal(0.0, 4.0)), "w_e": float(rng.normal(0.0, 4.0))}
     flown = sepcal.simulate("pitot-static", rows=ROWS, seed=seed, parameters=wind, hide=hide)
     columns = {name: np.array(values) for name, values in flown.items()}
-    if wanders:
-        time = columns["time_s"]
-        for name, size in (("airspeed_mps", WHITE), ("vn_mps", 0.1), ("ve_mps", 0.1)):
-            columns[name] = columns[name] + size * gauss_markov(60.0)(rng, time)
+    for name, (size, memory) in NOISES[noise].items():
+        columns[name] = columns[name] + size * gauss_markov(memory)(rng, columns["time_s"])
+    if NOISES[noise]:
         columns["airspeed_mps"] = np.round(columns["airspeed_mps"], 1)
     return sepcal.Flight(columns)
 
@@ -71,10 +75,10 @@ TRUTH = {"s_va": 0.95, "c_va": -0.6}
 
 
 def reduce_flight(
-    seed: int, wanders: bool, hide: dict[str, float] | None = None
+    seed: int, noise: str, hide: dict[str, float] | None = None
 ) -> _core.FlightFactor | None:
     """Its triangle at the true parameters; None where it can't be calibrated."""
-    flight = fly(seed, wanders, hide)
+    flight = fly(seed, noise, hide)
     try:
         core = sepcal.fit(sepcal.PitotStatic(), flight, threads=1).core
         names = _core.list_fleet_candidates(core, flight._core)
@@ -112,12 +116,10 @@ class Pool:
         return float(max(1.0, scatter) / np.sqrt(np.median(weights)))
 
 
-def make_pool(wanders: bool, processes: int | None, count: int = POOL) -> Pool:
+def make_pool(noise: str, processes: int | None, count: int = POOL) -> Pool:
     """Flights with all candidates alike."""
     with ProcessPoolExecutor(processes) as workers:
-        found = list(
-            workers.map(partial(reduce_flight, wanders=wanders), range(count), chunksize=8)
-        )
+        found = list(workers.map(partial(reduce_flight, noise=noise), range(count), chunksize=8))
     factors = [factor for factor in found if factor is not None]
     typical = max((tuple(f.columns) for f in factors[:20]), key=len)
     return Pool([factor for factor in factors if tuple(factor.columns) == typical])
@@ -207,11 +209,11 @@ def run_one(seed: int, pool: Pool, kind: str, errors: dict[str, float]) -> tuple
     return cause in named[:1] and other not in named, len(found) - 1
 
 
-def apart(seed: int, wanders: bool, effect: str, size: float) -> float:
+def apart(seed: int, noise: str, effect: str, size: float) -> float:
     """How far a flight simulated with the effect is from one drawn with it, in standard errors."""
     estimates = []
     for hide in (None, {effect: size}):
-        factor = reduce_flight(seed, wanders, hide)
+        factor = reduce_flight(seed, noise, hide)
         assert factor is not None
         T = np.array(factor.triangle)
         p = len(factor.parameters)
@@ -254,15 +256,14 @@ def cover(seed: int, pool: Pool) -> dict[str, tuple[int, int]]:
     }
 
 
-def agreement(wanders: bool, errors: dict[str, float], tests: float) -> Finding:
+def agreement(noise: str, errors: dict[str, float], tests: float) -> Finding:
     """Of 40 flights with each effect as large as fleets have it in all vehicles."""
     found = [
-        apart(seed, wanders, effect, what_shows(errors[effect], tests) / 5.0)
+        apart(seed, noise, effect, what_shows(errors[effect], tests) / 5.0)
         for effect in HIDDEN
         for seed in range(10)
     ]
     rms = float(np.sqrt(np.mean(np.square(found))))
-    noise = "wandering" if wanders else "white"
     return Finding(
         f"{noise}: flights drawn and simulated differ, rms",
         f"{rms:.3f} errors",
@@ -277,12 +278,11 @@ def run(arguments: argparse.Namespace, progress: Progress) -> Outcome:
     findings = []
     words = []
     kinds = ("nothing", "everywhere", "vehicles", "ages", "warmth")
-    for place, wanders in enumerate((False, True)):
-        noise = "wandering" if wanders else "white"
-        pool = make_pool(wanders, arguments.processes)
+    for place, noise in enumerate(NOISES):
+        pool = make_pool(noise, arguments.processes)
         errors = {effect: pool.flight_error(effect) for effect in HIDDEN}
         tests = len({name for name, *_ in pool.factors[0].columns})
-        findings.append(agreement(wanders, errors, tests))
+        findings.append(agreement(noise, errors, tests))
         with ProcessPoolExecutor(arguments.processes) as workers:
             twice = [*numbers, *(number + 100_000 for number in numbers)]
             covered = list(workers.map(partial(cover, pool=pool), twice, chunksize=5))

@@ -4265,7 +4265,7 @@ class PreparedFlight:
 
 class FlightFactor:
     """
-    A flight at a point, in units of its own noise, its own parameters projected out.
+    A flight at a point, in units of its own residual, its own parameters projected out.
     """
 
     _fields: typing.ClassVar[tuple] = (
@@ -4274,6 +4274,8 @@ class FlightFactor:
         "values",
         "columns",
         "triangle",
+        "inflation",
+        "whitened",
         "readings",
         "own",
         "centres",
@@ -4295,6 +4297,11 @@ class FlightFactor:
     def columns(self) -> list[tuple[str, str, str, bool]]:
         """
         (effect, coefficient, unit, whether it stands in for another cause) of each, c.
+        """
+    @property
+    def inflation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Of variances, where the flight's noise has a memory (p).
         """
     @property
     def own(self) -> dict[str, float]:
@@ -4328,6 +4335,11 @@ class FlightFactor:
         """
         Where it was linearised (p).
         """
+    @property
+    def whitened(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        [parameters | residual], less what a noise with a memory foretells; or empty.
+        """
 
 class VehicleFit:
     """
@@ -4338,6 +4350,7 @@ class VehicleFit:
         "vehicle",
         "flights",
         "values",
+        "inflation",
         "covariance",
         "jackknife",
         "misfit",
@@ -4359,6 +4372,11 @@ class VehicleFit:
     def flights(self) -> int:
         """
         How many.
+        """
+    @property
+    def inflation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Of variances, as its flights' noise models have it (p).
         """
     @property
     def jackknife(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:

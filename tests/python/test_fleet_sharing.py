@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -155,6 +156,43 @@ def write_logs(folder: Path, days: dict[str, int], rate: float = 0.0, **hide: fl
                 hide=hide or None,
             )  # fmt: skip
             flight.to_csv(folder / f"V{number}_{day}.csv")
+
+
+def test_gusts_bend_no_scale_and_are_told(tmp_path: Path) -> None:
+    """Velocities have the gusts that the wind of the model has not: 0.4 m/s with 3 s of memory."""
+    rng = np.random.default_rng(8)
+    for vehicle in range(6):
+        for k in range(4):
+            flight = sepcal.simulate(
+                "pitot-static", rows=900, seed=10 * vehicle + k,
+                parameters={"s_va": 0.95, "w_n": rng.normal(0, 3), "w_e": rng.normal(0, 3)},
+            )  # fmt: skip
+            columns = {name: np.array(values) for name, values in flight.items()}
+            step = np.median(np.diff(columns["time_s"]))
+            for name in ("vn_mps", "ve_mps"):
+                gust = np.zeros(flight.rows)
+                for row in range(1, flight.rows):
+                    gust[row] = np.exp(-step / 3.0) * gust[row - 1] + rng.normal(
+                        0, 0.4 * np.sqrt(1 - np.exp(-2 * step / 3.0))
+                    )
+                columns[name] = columns[name] + gust
+            sepcal.Flight(columns).to_csv(tmp_path / f"V{vehicle}_{k}.csv")
+    fleet = sepcal.Fleet(tmp_path, sepcal.PitotStatic(), names="{vehicle}_*.csv")
+    for flight in fleet.flights.values():
+        T = np.asarray(flight.factor.triangle)
+        alone = flight.factor.values + np.linalg.solve(T[:2, :2], T[:2, -1])
+        fitted = json.loads(flight.calibration)["parameters"]
+        assert alone[0] == pytest.approx(fitted["s_va"]["value"], abs=2e-3)
+    scales = [fit.values[fleet.parameters.index("s_va")] for fit in fleet.vehicles.values()]
+    assert np.mean(scales) == pytest.approx(0.95, abs=0.03)
+    (note,) = fleet.diagnose().notes
+    assert "where fast changes weigh more" in note
+    assert note in str(fleet.diagnose())
+
+
+def test_where_inputs_are_sure_nothing_is_told_of_weights(tmp_path: Path) -> None:
+    write_logs(tmp_path, DAYS)
+    assert sepcal.Fleet(tmp_path, sepcal.PitotStatic(), names=NAMES).diagnose().notes == []
 
 
 DAYS = {"2026-01-10": 0, "2026-03-11": 60, "2026-05-10": 120, "2026-07-09": 180}

@@ -36,9 +36,12 @@ struct FlightFactor {
   Eigen::VectorXd values = {};                // p, where it was linearised
   std::vector<CandidateColumn> columns = {};  // c
   Eigen::MatrixXd triangle = {};              // (p + c + 1)^2, upper
-  Eigen::VectorXd inflation = {};          // p: of variances, where the flight's noise has a memory
-  double readings = 0.0;                   // behind it, less own parameters
-  std::map<std::string, double> own = {};  // estimates of the flight's own, at `values`
+  Eigen::VectorXd inflation = {};  // p: of variances, where the flight's noise has a memory
+  /// [parameters | residual] (p + 1)^2, each row less what those before it foretell of its noise;
+  /// empty where that is not known.
+  Eigen::MatrixXd whitened = {};
+  double readings = 0.0;                       // behind it, less own parameters
+  std::map<std::string, double> own = {};      // estimates of the flight's own, at `values`
   std::map<std::string, double> centres = {};  // of drivers that go about one: effect's, by name
   double rmse = not_a_number;  // over all outputs, at the point, in their unit where they have one
 };
@@ -163,6 +166,7 @@ struct FleetFinding {
   double log10_p = 0.0;
   double p_adjusted = 1.0;  // after Bonferroni, for all that was asked of its cause
   double drop = 0.0;        // of the misfit (-2 ln L), as noise models have it
+  double share = 0.0;  // of the misfit that this takes: of the fleet's, or of the one vehicle's
   bool found = false;
   bool stands_in = false;                 // for what can be the cause, by its channel
   std::vector<std::string> as_good = {};  // that of the fleet takes as much in its place: -2 ln L

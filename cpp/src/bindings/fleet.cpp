@@ -80,6 +80,8 @@ void define_results_of_fleets(py::module_& module) {
              "[parameters | columns | residual], upper, (p + c + 1) square.")
       .field("inflation", &FlightFactor::inflation,
              "Of variances, where the flight's noise has a memory (p).")
+      .field("whitened", &FlightFactor::whitened,
+             "[parameters | residual], less what a noise with a memory foretells; or empty.")
       .field("readings", &FlightFactor::readings, "Behind it, less the flight's own parameters.")
       .field("own", &FlightFactor::own, "Estimates of the flight's own parameters.")
       .field("centres", &FlightFactor::centres, "By effect, of what its driver goes about.")
@@ -141,6 +143,7 @@ void define_results_of_fleets(py::module_& module) {
       .field("log10_p", &FleetFinding::log10_p, "For itself.")
       .field("p_adjusted", &FleetFinding::p_adjusted, "For the number of tests.")
       .field("drop", &FleetFinding::drop, "Of the misfit (-2 ln L), as the noise models have it.")
+      .field("share", &FleetFinding::share, "Of the fleet's misfit, or of its one vehicle's.")
       .field("found", &FleetFinding::found, "")
       .field("as_good", &FleetFinding::as_good, "Effects that explain as much in its place.")
       .field("stands_in", &FleetFinding::stands_in, "Its channel can't be the cause there.")

@@ -16,6 +16,7 @@
 #include "fleet/moderation.hpp"
 #include "fleet/scores.hpp"
 #include "fleet/spread.hpp"
+#include "fleet/weighting.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/order_statistics.hpp"
 #include "numerics/tails.hpp"
@@ -629,11 +630,21 @@ FleetDiagnosis Recipe::run() {
   const std::vector<double> after = scores_.misfits(accepted_, known_);
   result_.misfit_after = per_reading(total(after));
   result_.flights_after = tell(after);
+  const auto share_of = [&](const FleetFinding& finding) {
+    double misfit = 0.0;
+    for (std::size_t i = 0; i < flights_.size(); ++i) {
+      const bool counts = finding.vehicle.empty() || finding.vehicle == flights_[i].vehicle;
+      misfit += counts ? before[i] : 0.0;
+    }
+    return finding.drop / misfit;
+  };
+  for (FleetFinding& finding : result_.found) finding.share = share_of(finding);
   std::ranges::stable_sort(tested, {}, [](const Tested& one) { return one.finding.p_adjusted; });
   std::vector<std::string> told;
   for (Tested& one : tested) {
     if (std::ranges::find(told, one.finding.effect) != told.end()) continue;
     told.push_back(one.finding.effect);
+    one.finding.share = share_of(one.finding);
     result_.others.push_back(std::move(one.finding));
   }
   return std::move(result_);
@@ -644,8 +655,13 @@ FleetDiagnosis Recipe::run() {
 FleetDiagnosis diagnose(const std::vector<FleetFlight>& flights,
                         const FleetDiagnosisOptions& options) {
   group_vehicles(flights);  // throws Error for what is no fleet
-  if (options.common.empty()) return Recipe(flights, options).run();
-  return Recipe(common_as_columns(flights, part(flights, options.common)), options).run();
+  FleetDiagnosis result =
+      options.common.empty()
+          ? Recipe(flights, options).run()
+          : Recipe(common_as_columns(flights, part(flights, options.common)), options).run();
+  const std::string moved = note_weighting(flights, options.significance);
+  if (!moved.empty()) result.notes.push_back(moved);
+  return result;
 }
 
 }  // namespace sepcal

@@ -10,6 +10,7 @@
 #include "base/thread_pool.hpp"
 #include "diagnosis/candidate.hpp"
 #include "diagnosis/held_out.hpp"
+#include "diagnosis/null_hypothesis.hpp"
 #include "sepcal/detail/triangular_factor.hpp"
 #include "sepcal/error.hpp"
 #include "sepcal/fleet.hpp"
@@ -85,7 +86,8 @@ class Visit {
 
   /// [own | parameters | candidates | residual], in units of the flight's residual, which is found
   /// where it is not known yet.
-  TriangularFactor factor(const std::vector<Candidate>& candidates, Scales& scales) const {
+  TriangularFactor factor(const std::vector<Candidate>& candidates, Scales& scales,
+                          std::vector<Whitener>* whiteners = nullptr) const {
     const RowLayout& layout = room_.fit().layout;
     if (layout.outputs.empty()) {
       throw Error("the model leaves nothing of this flight: it has no noise to be weighed by");
@@ -103,7 +105,9 @@ class Visit {
       throw Error("an output's residual is zero at one point and not at another");
     }
     for (std::size_t j = 0; j < layout.outputs.size(); ++j) {
-      rows.middleRows(layout.first(j), layout.rows) *= layout.outputs[j].scale / scales[j];
+      auto of_output = rows.middleRows(layout.first(j), layout.rows);
+      of_output *= layout.outputs[j].scale / scales[j];
+      if (whiteners != nullptr) (*whiteners)[j].apply(of_output);
     }
     TriangularFactor factor(static_cast<int>(rows.cols()));
     factor.absorb(rows);
@@ -152,14 +156,18 @@ FlightFactor reduce(const DiagnosedFit& fitted, const ReduceOptions& options) {
   Visit visit(there, options.own, pool);
   const std::vector<Candidate> candidates = make_linear(visit.room(), options);
   const TriangularFactor factor = visit.factor(candidates, scales);
+  std::vector<Whitener> whiteners = find_null(visit.room().fit()).whiteners;
+  const MatrixXd whitened = visit.factor({}, scales, &whiteners).matrix();
   const Index own = visit.n_own();
   const Index below = factor.columns() - own;
   const RowLayout& layout = visit.room().fit().layout;
 
   const Index readings = layout.count() - own;
-  FlightFactor reduced{.triangle = factor.matrix().bottomRightCorner(below, below),
-                       .readings = static_cast<double>(readings),
-                       .rmse = total_rmse(layout, visit.room().fit().residual)};
+  FlightFactor reduced{
+      .triangle = factor.matrix().bottomRightCorner(below, below),
+      .whitened = whitened.bottomRightCorner(visit.parameters() + 1, visit.parameters() + 1),
+      .readings = static_cast<double>(readings),
+      .rmse = total_rmse(layout, visit.room().fit().residual)};
   reduced.values.resize(visit.parameters());
   reduced.inflation.resize(visit.parameters());
   for (Index k = 0; k < own + visit.parameters(); ++k) {

@@ -74,7 +74,7 @@ class FleetDiagnosis(_core.FleetDiagnosis):
         if near:
             lines += ["", "Beside these, the surest of the others:"]
             lines += [f"  {sentence_of(one)}" for one in near]
-        return "\n".join([*lines, *self.notes])
+        return "\n".join([*lines, *(f"\n{note}" for note in self.notes)])
 
 
 def sentence_of(finding: _core.FleetFinding) -> str:
@@ -94,8 +94,8 @@ def sentence_of(finding: _core.FleetFinding) -> str:
             size += f", spread {finding.spread[place]:.2g}"
         sizes.append(in_line(size))
     sentence = (
-        f"{in_line(finding.effect)}, {where} (p {in_short(finding.p_adjusted)}): "
-        + "; ".join(sizes)
+        f"{in_line(finding.effect)}, {where} (p {in_short(finding.p_adjusted)}, "
+        f"{100 * finding.share:.2g} % of the misfit): " + "; ".join(sizes)
     )
     if finding.as_good:
         sentence += f"; as good: {', '.join(map(in_line, finding.as_good[:3]))}"

@@ -107,19 +107,20 @@ def _missing(found: FleetDiagnosis) -> Section:
             one.effect,
             one.vehicle or one.cause,
             in_short(one.p_adjusted),
-            f"{one.drop:.3g}",
+            f"{100 * one.share:.2g} %",
         ]
         for one in (*found.found, *found.others[:8])
         if one.found or one.p_adjusted < 1.0
     ]
-    head = [("effect", False), ("where", False), ("p", True), ("drop of the misfit", True)]
+    head = [("effect", False), ("where", False), ("p", True), ("of the misfit", True)]
     lead = (
         f"{len(found.found)} found. With all of them the misfit per reading falls from "
         f"{found.misfit_before:.3g} to {found.misfit_after:.3g}; of noise alone it is 1."
         if found.found
         else f"No test is significant{'; these come nearest' * bool(rows)}."
     )
-    return Section("What is missing", lead, [table(head, rows)] * bool(rows))
+    notes = [html("<p>{}</p>", note) for note in found.notes]
+    return Section("What is missing", lead, [*[table(head, rows)] * bool(rows), *notes])
 
 
 def _added(fleet: Fleet) -> list[Section]:

@@ -88,6 +88,7 @@ class Store:
                 told = json.loads(bytes(arrays["told"]).decode())
                 fields = told.pop("factor")
                 fields["values"] = arrays["values"]
+                fields["whitened"] = arrays["whitened"]
                 fields["columns"] = [tuple(column) for column in fields["columns"]]
                 side = fields["values"].size + len(fields["columns"]) + 1
                 triangle = np.zeros((side, side))
@@ -105,6 +106,7 @@ class Store:
         fields = dict(factor._asdict())
         values = np.asarray(fields.pop("values"))
         triangle = np.asarray(fields.pop("triangle"))
+        whitened = np.asarray(fields.pop("whitened"))
         fields["inflation"] = np.asarray(fields["inflation"]).tolist()
         told = {
             "calibration": visit.calibration,
@@ -119,6 +121,7 @@ class Store:
             content,
             told=np.frombuffer(json.dumps(told).encode(), dtype=np.uint8),
             values=values,
+            whitened=whitened,
             triangle=triangle[np.triu_indices(len(triangle))],
         )
         write_bytes(self._path(question, visit.sha256), content.getvalue())
