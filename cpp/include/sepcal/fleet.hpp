@@ -36,7 +36,9 @@ struct FlightFactor {
   Eigen::VectorXd values = {};                // p, where it was linearised
   std::vector<CandidateColumn> columns = {};  // c
   Eigen::MatrixXd triangle = {};              // (p + c + 1)^2, upper
-  Eigen::VectorXd inflation = {};  // p: of variances, where the flight's noise has a memory
+  /// p: by what variances exceed those of white noise, where the flight's noise has a memory;
+  /// empty: by nothing.
+  Eigen::VectorXd inflation = {};
   /// [parameters | residual] (p + 1)^2, each row less what those before it foretell of its noise;
   /// empty where that is not known.
   Eigen::MatrixXd whitened = {};

@@ -27,7 +27,7 @@ FlightFactor of_own(const FlightFactor& factor, const Parting& parting) {
   own.parameters.clear();
   own.units.clear();
   own.values = factor.values(parting.own);
-  own.inflation = factor.inflation(parting.own);
+  own.inflation = inflation_of(factor)(parting.own);
   for (const Index k : parting.own) {
     own.parameters.push_back(factor.parameters[static_cast<std::size_t>(k)]);
     own.units.push_back(factor.units[static_cast<std::size_t>(k)]);

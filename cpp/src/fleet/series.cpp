@@ -63,7 +63,7 @@ VehicleSeries follow_vehicle(const std::vector<FleetFlight>& flights,
     const Told told = tell(own.back(), reference);
     series.values.col(static_cast<Index>(i)) = told.values;
     series.errors.col(static_cast<Index>(i)) = told.covariance.diagonal().cwiseSqrt();
-    if (n == 1) series.errors.array() *= flight.factor.inflation.array().sqrt();
+    if (n == 1) series.errors.array() *= fleet::inflation_of(flight.factor).array().sqrt();
   }
   const double whole = left(before.back());
   const auto free = static_cast<double>(p);

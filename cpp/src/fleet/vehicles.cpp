@@ -42,8 +42,9 @@ std::vector<Vehicle> group_vehicles(const std::vector<FleetFlight>& flights) {
     if (!names.insert(flight.name).second) {
       throw Error("two flights are called '" + flight.name + "'");
     }
-    if (flight.factor.inflation.size() != flight.factor.values.size()) {
-      throw Error("flight '" + flight.name + "' has an inflation for each of its parameters");
+    const Index inflations = flight.factor.inflation.size();
+    if (inflations != 0 && inflations != flight.factor.values.size()) {
+      throw Error("flight '" + flight.name + "': give an inflation for each of its parameters");
     }
     if (flight.factor.parameters != flights.front().factor.parameters) {
       throw Error("flight '" + flight.name + "' has other parameters than '" +
@@ -73,10 +74,14 @@ TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const
   return all;
 }
 
+VectorXd inflation_of(const FlightFactor& factor) {
+  return factor.inflation.size() > 0 ? factor.inflation : VectorXd::Ones(factor.values.size());
+}
+
 VectorXd mean_inflation(const std::vector<FleetFlight>& flights,
                         const std::vector<std::size_t>& places) {
   VectorXd sum = VectorXd::Zero(flights.front().factor.values.size());
-  for (const std::size_t i : places) sum += flights[i].factor.inflation;
+  for (const std::size_t i : places) sum += inflation_of(flights[i].factor);
   return sum / static_cast<double>(places.size());
 }
 
@@ -200,8 +205,9 @@ FlightFactor with_rate(const FlightFactor& factor, const std::string& parameter,
   grown.units.push_back(fleet::rate_unit(factor.units[static_cast<std::size_t>(k)], attribute));
   grown.values.conservativeResize(p + 1);
   grown.values[p] = 0.0;
-  grown.inflation.conservativeResize(p + 1);
-  grown.inflation[p] = factor.inflation[k];
+  const VectorXd inflation = fleet::inflation_of(factor);
+  grown.inflation.resize(p + 1);
+  grown.inflation << inflation, inflation[k];
   grown.triangle = triangle.matrix();
   return grown;
 }

@@ -33,7 +33,10 @@ TriangularFactor sum(const TriangularFactor& a, const TriangularFactor& b);
 TriangularFactor merge_parameters(const std::vector<FleetFlight>& flights, const Vehicle& vehicle,
                                   const Eigen::VectorXd& reference);
 
-/// Of these flights (p).
+/// Of variances (p): 1 where none is given.
+Eigen::VectorXd inflation_of(const FlightFactor& factor);
+
+/// Over these flights (p).
 Eigen::VectorXd mean_inflation(const std::vector<FleetFlight>& flights,
                                const std::vector<std::size_t>& places);
 

@@ -106,6 +106,25 @@ TEST_CASE("a vehicle's parameters are least squares of all its rows") {
   CHECK(fits[0].readings == 4.0 * rows);
 }
 
+TEST_CASE("a noise with a memory widens errors and moves nothing") {
+  Draws draws(4);
+  std::vector<FleetFlight> flights;
+  for (int f = 0; f < 2; ++f) {
+    flights.push_back(
+        reduced(draw_flight(draws, draw(draws, p, 1), VectorXd::Zero(c)), std::to_string(f), "v"));
+  }
+  const VehicleFit white = fit_vehicles(flights)[0];
+  for (FleetFlight& flight : flights) flight.factor.inflation = Eigen::Vector2d(4.0, 1.0);
+  const VehicleFit wider = fit_vehicles(flights)[0];
+  CHECK(wider.values == white.values);
+  CHECK(wider.covariance(0, 0) == Approx(4.0 * white.covariance(0, 0)));
+  CHECK(wider.covariance(0, 1) == Approx(2.0 * white.covariance(0, 1)));
+  CHECK(wider.covariance(1, 1) == Approx(white.covariance(1, 1)));
+  flights[1].factor.inflation.resize(3);
+  CHECK_THROWS_WITH_AS(fit_vehicles(flights),
+                       "flight '1': give an inflation for each of its parameters", Error);
+}
+
 TEST_CASE("what is hidden is found where it is") {
   Draws draws(2);
   const FleetDiagnosis nothing = diagnose(draw_fleet(draws, 0.0, 0.0));
