@@ -207,3 +207,14 @@ def test_simulate_flies_the_probe_that_it_is_given() -> None:
     strong = sepcal.simulate(sepcal.FiveHoleProbe(k_alpha=4.5, k_beta=4.5), rows=300)
     assert_allclose(strong["dpa_pa"], 2 * weak["dpa_pa"], rtol=1e-12)
     assert_array_equal(strong["dpb_pa"], weak["dpb_pa"])
+
+
+def test_a_prior_of_an_effect() -> None:
+    """Where stage one holds the coefficient, the prior waits for stage two."""
+    flight = sepcal.simulate("pitot-static", rows=300, seed=3, hide={"pressure_offset": 30})
+    known = sepcal.fit(
+        sepcal.PitotStatic(), flight, effects=["pressure_offset"],
+        prior={"pressure_offset.s": (30.0, 1e-3)},
+    )["pressure_offset.s"]  # fmt: skip
+    assert known.value == pytest.approx(30.0, abs=1e-5)  # a flight tells it to 11 Pa
+    assert known.standard_error == pytest.approx(1e-3, rel=1e-3)

@@ -90,6 +90,7 @@ def diagnose_octocopter(mount: str) -> sepcal.Diagnosis:
     return sepcal.fit(OCTOCOPTER, flight, samples=100).diagnose(simulations=49)
 
 
+@pytest.mark.slow
 def test_an_octocopters_current():
     """Beside the power wiring: the battery's voltage or its current, which are one cause."""
     diagnosis = diagnose_octocopter("internal")

@@ -215,7 +215,7 @@ def _run(*words: str) -> subprocess.CompletedProcess[str]:
     )  # fmt: skip
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_every_verb_from_the_command_line(flight: sepcal.Flight, tmp_path: Path) -> None:
     """By file and class, as of a model without a state."""
     model = ("--model", f"{FILE}:Pendulum")

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import sepcal
+from cases import but_first_slow
 from sepcal.reporting.colours import DARK
 
 pytest.importorskip("plotly", reason="plots need plotly: pip install sepcal[report]")
@@ -86,7 +87,7 @@ class Line:
         return u.v[:, None, None], np.zeros((len(u.v), 1))
 
 
-@pytest.mark.parametrize("kind", ["sensors", "aircraft", "studies"])
+@pytest.mark.parametrize("kind", but_first_slow(["studies", "sensors", "aircraft"]))
 def test_every_result_is_drawn_by_both_libraries_in_both_themes(kind: str) -> None:
     import matplotlib.figure
     import plotly.graph_objects
