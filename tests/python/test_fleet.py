@@ -399,6 +399,15 @@ def test_names_and_tables(folder: Path, tmp_path: Path) -> None:
         fleet_logs.find_logs(None)
 
 
+def test_times_of_one_flight_hold_for_no_other(folder: Path) -> None:
+    flight = sepcal.read(next(folder.glob("*.csv")))
+    part = sepcal.fit(sepcal.PitotStatic(), flight, stage_one_segments="2:40")
+    with pytest.raises(sepcal.Error, match="of the rows 2:40 of its flight"):
+        sepcal.Fleet(folder, part, names=NAMES)
+    moving = sepcal.fit(sepcal.PitotStatic(), flight, where="airspeed_mps > 4")
+    assert len(sepcal.Fleet(folder, moving, names=NAMES).logs) == 12
+
+
 def test_unknown_groups_are_named(fleet: sepcal.Fleet) -> None:
     with pytest.raises(sepcal.Error, match="nothing is called 'colour'; there is: age_days"):
         fleet.compare("colour")

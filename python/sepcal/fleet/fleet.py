@@ -95,8 +95,11 @@ class Fleet:
             **options: FitOptions.
 
         Raises:
-            Error: No log; no name that fits; a log that the table lacks.
+            Error: No log; no name that fits; a log that the table lacks; a calibration of some
+                seconds of its flight.
         """
+        if isinstance(like, Calibration):
+            _refuse_segments(like)
         self.logs, self._misnamed = find_logs(logs, names, table, share)
         self._like = like
         self._options = options
@@ -440,6 +443,17 @@ def _check_significance(significance: float) -> None:
     """Raises Error for what is no probability."""
     if not 0.0 < significance < 1.0:
         raise _core.Error(f"significance={significance}: give a probability between 0 and 1")
+
+
+def _refuse_segments(like: Calibration) -> None:
+    """Raises Error where it is of times that no other flight has."""
+    options = json.loads(like.to_json())["options"]
+    for name in ("stage_one_segments", "stage_two_segments"):
+        if ":" in (segments := str(options.get(name, ""))):
+            raise _core.Error(
+                f"the calibration to be like is of the rows {in_line(segments)} of its flight, which "
+                'are times of no other; fit it with where instead, as where="dp_pa > 80"'
+            )
 
 
 def about_centres(calibration: Calibration, centres: Mapping[str, float]) -> Calibration:
