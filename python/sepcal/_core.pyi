@@ -4555,6 +4555,7 @@ class FleetFinding:
         "log10_p",
         "p_adjusted",
         "drop",
+        "share",
         "found",
         "as_good",
         "stands_in",
@@ -4599,6 +4600,11 @@ class FleetFinding:
     def p_adjusted(self) -> float:
         """
         For the number of tests.
+        """
+    @property
+    def share(self) -> float:
+        """
+        Of the fleet's misfit, or of its one vehicle's.
         """
     @property
     def spread(self) -> list[float]:

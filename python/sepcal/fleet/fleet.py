@@ -451,8 +451,8 @@ def _refuse_segments(like: Calibration) -> None:
     for name in ("stage_one_segments", "stage_two_segments"):
         if ":" in (segments := str(options.get(name, ""))):
             raise _core.Error(
-                f"the calibration to be like is of the rows {in_line(segments)} of its flight, which "
-                'are times of no other; fit it with where instead, as where="dp_pa > 80"'
+                f"the calibration to be like is of the rows {in_line(segments)} of its flight, "
+                'times of no other; fit it with where instead, as where="dp_pa > 80"'
             )
 
 
