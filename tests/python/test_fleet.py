@@ -26,6 +26,7 @@ import sepcal
 from sepcal import _core
 from sepcal.fleet import logs as fleet_logs
 from sepcal.fleet.report import fleet_report
+from sepcal.interrupts import interrupts_held
 
 SCALES = {"V1": 0.95, "V2": 0.97, "V3": 0.93, "V4": 0.95}
 DAYS = ("2026-01-10", "2026-02-10", "2026-03-10")
@@ -237,7 +238,7 @@ def test_a_filesystem_that_fails_now_and_then(remote: str, fleet: sepcal.Fleet) 
 def test_ctrl_c_ends_a_run_in_one_line(folder: Path, tmp_path: Path) -> None:
     """On processes too, whatever they are at; what was done is kept."""
     for log in folder.glob("*.csv"):
-        for copy in range(12):
+        for copy in range(40):
             shutil.copy(log, tmp_path / f"{log.stem.replace('_', f'-{copy}_')}.csv")
     sepcal.fit(sepcal.PitotStatic(), next(folder.glob("*.csv"))).save(tmp_path / "base.json")
     words = ["fleet", "fit", "*.csv", "--like", "base.json", "--names", NAMES, "-o", "kept"]
@@ -253,6 +254,21 @@ def test_ctrl_c_ends_a_run_in_one_line(folder: Path, tmp_path: Path) -> None:
     assert error == (
         "sepcal fleet fit: stopped by Ctrl-C; the same command goes on with what is done\n"
     )
+
+
+def test_an_interrupt_waits_for_the_end_of_a_block() -> None:
+    done = []
+
+    def work() -> None:
+        with interrupts_held():
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.05)
+            done.append(True)
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert done
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_a_run_is_taken_up_where_it_ended(

@@ -20,6 +20,7 @@ from sepcal.fleet.logs import Log
 from sepcal.fleet.store import Store
 from sepcal.fleet.visiting import Question, Visit, visit
 from sepcal.flight import kind_of
+from sepcal.interrupts import interrupts_held
 from sepcal.printing import in_line
 from sepcal.progress import Shown, show_progress
 
@@ -209,12 +210,14 @@ def _visit(
                 answers[answer.name] = answer
                 fitted.cpu_seconds += answer.seconds
                 if way.store is not None:
-                    way.store.keep(open_ones[place], answer)
+                    with interrupts_held():
+                        way.store.keep(open_ones[place], answer)
                 done += 1
                 tell(f"{task}, {len(open_ones)} logs", done / len(open_ones))
     finally:
         if way.store is not None:
-            way.store.save_index()
+            with interrupts_held():
+                way.store.save_index()
     return {name: answers[name] for name in questions}
 
 
