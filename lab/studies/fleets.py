@@ -207,8 +207,8 @@ def run_one(seed: int, pool: Pool, kind: str, errors: dict[str, float]) -> tuple
         fleet = draw(pool, rng, everywhere={by_warmth: sign * DRIFT / SEASON}, seasons=True)
     cause, other = (by_age, by_warmth) if kind == "ages" else (by_warmth, by_age)
     found = _core.diagnose_fleet(fleet, LEVEL, 8).found
-    named = [one.effect for one in found]
-    return cause in named[:1] and other not in named, len(found) - 1
+    effects = [one.effect for one in found]
+    return cause in effects[:1] and other not in effects, len(found) - 1
 
 
 def apart(seed: int, noise: str, effect: str, size: float) -> float:
