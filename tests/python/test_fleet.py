@@ -13,6 +13,7 @@ import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -413,6 +414,24 @@ def test_names_and_tables(folder: Path, tmp_path: Path) -> None:
         fleet_logs.find_logs(folder, None, table)
     with pytest.raises(sepcal.Error, match="give logs"):
         fleet_logs.find_logs(None)
+
+
+def test_dates_as_logs_are_called() -> None:
+    noon = datetime(2026, 4, 2, 12, 11, 10, tzinfo=UTC)
+    for text in ("2026-04-02T12:11:10Z", "2026-04-02_12-11-10", "20260402-121110"):
+        assert fleet_logs.read_date(text) == noon
+    assert fleet_logs.read_date("2026-04-02") == datetime(2026, 4, 2, tzinfo=UTC)
+    for text in ("2026-13-02", "2026-04-02_25-00-00", "flight 3", ""):
+        assert fleet_logs.read_date(text) is None
+
+
+def test_files_beside_the_logs_are_none(folder: Path, tmp_path: Path) -> None:
+    """What `sepcal log` says of a flight stands beside it."""
+    for log in folder.glob("V1_*.csv"):
+        shutil.copy(log, tmp_path)
+        (tmp_path / f"{log.name}.json").write_text("{}")
+    logs, misnamed = fleet_logs.find_logs(tmp_path, NAMES)
+    assert (len(logs), misnamed) == (3, {})
 
 
 def test_times_of_one_flight_hold_for_no_other(folder: Path) -> None:

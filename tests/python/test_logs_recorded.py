@@ -250,3 +250,23 @@ def test_cut_off(name, share, tmp_path):
     assert 0.8 * share * whole.rows < part.rows < whole.rows
     inner = slice(0, part.rows - 20)
     assert_allclose(part["mx_ut"][inner], whole["mx_ut"][: part.rows][inner])
+
+
+def test_reading_a_ulog_leaves_the_streams_alone(monkeypatch, capsys):
+    """They are the whole process', and threads that read side by side restored each other's."""
+    import pyulog.core
+
+    before = sys.stdout, sys.stderr
+    seen = []
+
+    def parse(*_, **__):
+        pyulog.core.print("damaged here")
+        seen.append((sys.stdout, sys.stderr))
+        raise ValueError("no more")
+
+    monkeypatch.setattr(pyulog, "ULog", parse)
+    with pytest.raises(sepcal.Error, match="no more"):
+        sepcal.read(find_fixture("px4_log.ulg"))
+    assert seen == [before]
+    pyulog.core.print("another's reading")
+    assert capsys.readouterr() == ("another's reading\n", "")

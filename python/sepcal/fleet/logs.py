@@ -78,7 +78,7 @@ def find_files(logs: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) 
                 raise _core.Error(f"{in_line(pattern)}: {in_line(str(error))}") from None
         elif os.path.isdir(pattern):
             inside = glob.glob(f"{glob.escape(pattern)}/**", recursive=True)
-            found = [one for one in inside if os.path.isfile(one)]
+            found = [one for one in inside if os.path.isfile(one) and not one.endswith(".json")]
         else:
             found = glob.glob(pattern, recursive=True) if is_pattern else [pattern]
         if not found:
@@ -266,9 +266,10 @@ def _is_number(text: str) -> bool:
 
 
 def read_date(text: str) -> datetime | None:
-    """2026-03-01, 20260301, 2026-03-01T10:20:00Z; None: no date."""
+    """2026-03-01, 20260301, 2026-03-01T10:20:00Z, 2026-03-01_10-20-00; None: no date."""
+    clock = re.fullmatch(r"(\d{4}-?\d\d-?\d\d)[ _-](\d\d)[-._:]?(\d\d)[-._:]?(\d\d)", text)
     try:
-        date = datetime.fromisoformat(text)
+        date = datetime.fromisoformat("{}T{}:{}:{}".format(*clock.groups()) if clock else text)
     except ValueError:
         return None
     return date if date.tzinfo else date.replace(tzinfo=UTC)

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import contextlib
 import io
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,27 @@ class Topic:
         return make_channel(source, times, values, (*self.said, *done))
 
 
+_here = threading.local()  # `reads`, where this thread does
+
+
+def _print(*words: object, **options: Any) -> None:  # noqa: ANN401
+    """In place of pyulog's, which tells what it finds damaged; of threads that read for us nothing.
+
+    The streams are left alone: they are the whole process', and other threads print.
+    """
+    if not getattr(_here, "reads", False):
+        print(*words, **options)
+
+
+@contextlib.contextmanager
+def _silent_reading() -> Iterator[None]:
+    _here.reads = True
+    try:
+        yield
+    finally:
+        _here.reads = False
+
+
 class ULog:
     """A ULog's topics, parameters and information.
 
@@ -121,7 +143,7 @@ class ULog:
             Error: No pyulog, or a file that ends inside a message, unless `cut_off` allows it.
         """
         try:
-            import pyulog
+            import pyulog.core
         except ImportError as error:
             raise _core.Error(
                 f"{file}: a ULog needs pyulog, which is not installed: pip install sepcal[logs]"
@@ -130,9 +152,9 @@ class ULog:
         with open(file, "rb") as opened:
             data = opened.read()
         _check_definitions(file, data)
-        talk = io.StringIO()  # pyulog prints what it finds damaged
+        pyulog.core.print = _print
         try:
-            with contextlib.redirect_stdout(talk), contextlib.redirect_stderr(talk):
+            with _silent_reading():
                 log = pyulog.ULog(io.BytesIO(data), message_name_filter_list=list(READ))
         except Exception as error:  # of a damaged file pyulog raises what it meets
             raise _core.Error(
