@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -188,6 +190,24 @@ def test_gusts_bend_no_scale_and_are_told(tmp_path: Path) -> None:
     (note,) = fleet.diagnose().notes
     assert "where fast changes weigh more" in note
     assert note in str(fleet.diagnose())
+
+
+@pytest.mark.parametrize(
+    ("cause", "share", "is_noisy", "doubted"),
+    [
+        ("everywhere", 0.01, True, True),
+        ("grows", 0.01, True, True),
+        ("everywhere", 0.01, False, False),
+        ("everywhere", 0.05, True, False),
+        ("one-vehicle", 0.01, True, False),
+    ],
+)
+def test_a_small_effect_beside_a_noisy_input_is_in_doubt(
+    cause: str, share: float, is_noisy: bool, doubted: bool
+) -> None:
+    diagnosis: Any = SimpleNamespace(notes=["noise in an input pulls"] if is_noisy else ["another"])
+    finding: Any = SimpleNamespace(cause=cause, share=share)
+    assert ("IN DOUBT" in sepcal.FleetDiagnosis.doubt(diagnosis, finding)) == doubted
 
 
 def test_where_inputs_are_sure_nothing_is_told_of_weights(tmp_path: Path) -> None:

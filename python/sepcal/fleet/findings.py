@@ -10,6 +10,7 @@ from sepcal.printing import in_line
 
 FOUND = 3  # an exit code, as of a flight's diagnosis
 NOTHING = 0
+SMALL = 0.02  # share of the misfit: gusts make effects of 1.4 % (docs/fleets.md, Limits)
 
 
 class FleetDiagnosis(_core.FleetDiagnosis):
@@ -33,6 +34,21 @@ class FleetDiagnosis(_core.FleetDiagnosis):
         """3 where an effect is missing, else 0."""
         return FOUND if self.found else NOTHING
 
+    def doubt(self, finding: _core.FleetFinding) -> str:
+        """What a small effect of the whole fleet may be, where an input is noisy; else nothing.
+
+        Example:
+            >>> files = sepcal.datasets.write_fleet(folder, hide={"wind[altitude_m]": 0.05})
+            >>> fleet = sepcal.Fleet(folder, sepcal.PitotStatic(), names="{vehicle}_{date}.csv")
+            >>> found = fleet.diagnose()
+            >>> found.doubt(found.found[0])
+            ''
+        """
+        is_small = finding.cause in ("everywhere", "grows") and finding.share < SMALL
+        if not (is_small and any("noise in an input" in note for note in self.notes)):
+            return ""
+        return "; IN DOUBT: it may stand in for the noise of an input, see below"
+
     def to_json(self) -> str:
         """As JSON.
 
@@ -48,7 +64,7 @@ class FleetDiagnosis(_core.FleetDiagnosis):
             "tests": self.tests,
             "misfit_before": self.misfit_before,
             "misfit_after": self.misfit_after,
-            "found": [_told(one) for one in self.found],
+            "found": [_told(one) | {"doubt": self.doubt(one)} for one in self.found],
             "others": [_told(one) for one in self.others],
             "notes": list(self.notes),
         }
@@ -62,7 +78,7 @@ class FleetDiagnosis(_core.FleetDiagnosis):
                 f"{self.vehicles} vehicles is significant."
             )
         for number, one in enumerate(self.found, 1):
-            lines.append(f"{number}. {sentence_of(one)}")
+            lines.append(f"{number}. {sentence_of(one)}{self.doubt(one)}")
         if self.found:
             lines += [
                 "",

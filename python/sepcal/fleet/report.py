@@ -46,7 +46,7 @@ def _verdict(fleet: Fleet, found: FleetDiagnosis, watched: Monitoring) -> Html:
     lines: list[Html] = []
     if found.found:
         first = found.found[0]
-        lines.append(html("<h1>{}</h1>", f"Missing: {sentence_of(first)}"))
+        lines.append(html("<h1>{}</h1>", f"Missing: {sentence_of(first)}{found.doubt(first)}"))
     else:
         lines.append(html("<h1>Nothing was found missing in this fleet</h1>"))
     lines.append(
