@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import builtins
 import contextlib
 import io
 import threading
@@ -116,7 +117,7 @@ def _print(*words: object, **options: Any) -> None:  # noqa: ANN401
     The streams are left alone: they are the whole process', and other threads print.
     """
     if not getattr(_here, "reads", False):
-        print(*words, **options)
+        builtins.print(*words, **options)
 
 
 @contextlib.contextmanager
